@@ -1,0 +1,62 @@
+// LensModel: one question, "given a sensor point, an aperture point and a wavelength, where does
+// the ray leave the lens, and how does it move when the sensor point moves?", and its inverse.
+// Every camera of the renderer asks it and nothing else.
+//
+// Lens space: millimetres, +z toward the scene, the sensor parallel to the xy plane at negative z.
+// The origin is the pinhole or the centre of the thin lens; a prescription's lens names its own.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+
+namespace etendue {
+
+struct SensorPoint {
+    Eigen::Vector2d mm;
+};
+
+struct AperturePoint {
+    Eigen::Vector2d mm;
+};
+
+/// A ray that leaves the lens toward the scene.
+struct ExitRay {
+    Eigen::Vector3d origin;                         // mm
+    Eigen::Vector3d direction;                      // unit
+    Eigen::Matrix<double, 3, 2> originBySensor;     // mm per mm, aperture point held fixed
+    Eigen::Matrix<double, 3, 2> directionBySensor;  // 1/mm, aperture point held fixed
+    double throughput;                              // J τ of equation (1), per mm² of aperture
+};
+
+class LensModel {
+public:
+    virtual ~LensModel() = default;
+
+    /// Empty when no light passes the lens from `sensor` through `aperture`.
+    virtual std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture,
+                                         double wavelengthNm) const = 0;
+
+    /// The sensor point from which the ray through `aperture` meets `targetMm` (lens space). Empty
+    /// when there is none.
+    virtual std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm,
+                                               AperturePoint aperture,
+                                               double wavelengthNm) const = 0;
+
+    /// Uniform over the aperture's area. `u` in [0, 1)².
+    virtual AperturePoint sampleAperture(Eigen::Vector2d u) const = 0;
+    /// mm². A pinhole's aperture is a point; its area counts as 1.
+    virtual double apertureAreaMm2() const = 0;
+};
+
+/// Perspective through a point, the sensor at `sensorDistanceMm` behind it.
+std::unique_ptr<LensModel> makePinhole(double sensorDistanceMm);
+
+/// The ideal lens of focal length f, focused at the distance u in front of the lens (infinity
+/// allowed): the sensor is at v = 1/(1/f − 1/u) behind it. The aperture is a disc of
+/// `apertureRadiusMm` in the lens plane. Throws std::invalid_argument unless u > f > 0 and the
+/// radius is positive.
+std::unique_ptr<LensModel> makeThinLens(double focalLengthMm, double focusDistanceMm,
+                                        double apertureRadiusMm);
+
+}  // namespace etendue

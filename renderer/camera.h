@@ -1,0 +1,77 @@
+// Camera: one class for every lens; pixels ↔ mm ↔ metres, and the densities of docs/camera.md.
+// Everything about densities is written here once and used by every estimator.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "lens/lens_model.h"
+#include "renderer/spectrum.h"
+#include "renderer/surface_point.h"
+#include "renderer/transform.h"
+#include "renderer/vec.h"
+
+namespace etendue {
+
+/// A ray from the lens into the scene, in world space.
+struct CameraRay {
+    Vec3 origin;
+    Vec3 direction;  // unit
+    float weight;    // J τ |A| / N of equation (1), times the exposure: radiance → pixel value
+    // The footprint's two parts: how the ray moves with the film point, aperture point held fixed.
+    std::array<Vec3, 2> originByPixel;     // m per pixel
+    std::array<Vec3, 2> directionByPixel;  // 1 per pixel
+};
+
+/// A scene point seen through one aperture point.
+struct CameraConnection {
+    Vec2 film;       // pixels, from the top left of the full frame; may lie outside it
+    CameraRay ray;   // the ray that trace would have made there
+    float distance;  // m, from ray.origin to the scene point
+};
+
+struct CameraSettings {
+    int width = 0, height = 0;    // pixels of the full frame
+    double sensorWidthMm = 36.0;  // pixels are square
+    Transform worldFromLens;      // rotation and translation; lens axes in metres
+    double exposureStops = 0.0;   // the picture times 2^stops
+};
+
+class Camera {
+public:
+    Camera(std::shared_ptr<const LensModel> lens, const CameraSettings& settings);
+
+    /// The ray from film point `film` (pixels, full frame; need not lie inside it) through the
+    /// aperture point that `apertureUniform` draws. Empty when the lens blocks it.
+    std::optional<CameraRay> sampleRay(Vec2 film, Vec2 apertureUniform,
+                                       const Wavelengths& wavelengths) const;
+
+    /// The film point from which the ray through that same aperture point meets `scenePoint`. Empty
+    /// when there is none. The importance of the connection is ray.weight · pdfArea(ray, …),
+    /// exactly equation (1) after the change of variables from film to scene.
+    std::optional<CameraConnection> connect(Vec3 scenePoint, Vec2 apertureUniform,
+                                            const Wavelengths& wavelengths) const;
+
+    const CameraSettings& settings() const { return settings_; }
+    Vec3 position() const;  // of the lens origin, world
+    Vec3 forward() const;
+
+private:
+    std::optional<CameraRay> trace(SensorPoint sensor, AperturePoint aperture,
+                                   double wavelengthNm) const;
+    SensorPoint sensorFromFilm(Vec2 film) const;
+
+    std::shared_ptr<const LensModel> lens_;
+    CameraSettings settings_;
+    double pixelMm_ = 0.0;
+    double weightScale_ = 0.0;  // |A| / N · 2^exposure
+};
+
+/// Equation (2): density per camera sample of one pixel, 1/m², at the point where `ray` meets a
+/// surface at `distance` with unit normal `normal`.
+float pdfArea(const CameraRay& ray, float distance, Vec3 normal);
+/// Its limit at infinity, 1/sr.
+float pdfSolidAngle(const CameraRay& ray);
+
+}  // namespace etendue

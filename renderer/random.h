@@ -1,0 +1,71 @@
+// Counter-based random numbers: the same (seed, stream, sample, dimension) gives the same number on
+// any machine, in any order, on any number of threads. Philox 4x32-10, Salmon et al. 2011,
+// "Parallel Random Numbers: As Easy as 1, 2, 3".
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "renderer/vec.h"
+
+namespace etendue {
+
+using PhiloxBlock = std::array<std::uint32_t, 4>;
+
+/// One keyed bijection of the 128-bit counter.
+constexpr PhiloxBlock philox(PhiloxBlock counter, std::uint32_t key0, std::uint32_t key1) {
+    for (int round = 0; round < 10; ++round) {
+        const std::uint64_t a = std::uint64_t{0xD2511F53u} * counter[0];
+        const std::uint64_t b = std::uint64_t{0xCD9E8D57u} * counter[2];
+        counter = {
+            static_cast<std::uint32_t>(b >> 32) ^ counter[1] ^ key0, static_cast<std::uint32_t>(b),
+            static_cast<std::uint32_t>(a >> 32) ^ counter[3] ^ key1, static_cast<std::uint32_t>(a)};
+        key0 += 0x9E3779B9u;
+        key1 += 0xBB67AE85u;
+    }
+    return counter;
+}
+
+/// A float in [0, 1): 32 random bits, never rounded up to 1.
+constexpr float uniformFloat(std::uint32_t bits) {
+    constexpr float oneBelowOne = 0x1.fffffep-1f;
+    const float u = static_cast<float>(bits) * 0x1p-32f;
+    return u < oneBelowOne ? u : oneBelowOne;
+}
+
+/// What a stream of numbers is used for, so that camera and light paths of equal index are
+/// independent.
+enum class RandomDomain : std::uint32_t { cameraPath = 0, lightPath = 1, test = 2 };
+
+/// The numbers of one path, dimension after dimension.
+class RandomStream {
+public:
+    /// `index` is the pixel's or light path's index, `sample` the global sample index.
+    constexpr RandomStream(std::uint64_t seed, std::uint32_t index, std::uint32_t sample,
+                           RandomDomain domain = RandomDomain::cameraPath)
+        : key0_(static_cast<std::uint32_t>(seed)),
+          key1_(static_cast<std::uint32_t>(seed >> 32)),
+          counter_{0, sample, index, static_cast<std::uint32_t>(domain)} {}
+
+    constexpr std::uint32_t nextBits() {
+        if (used_ == 4) {
+            block_ = philox(counter_, key0_, key1_);
+            ++counter_[0];
+            used_ = 0;
+        }
+        return block_[used_++];
+    }
+    constexpr float next() { return uniformFloat(nextBits()); }
+    constexpr Vec2 next2() {
+        const float x = next();
+        return {x, next()};
+    }
+
+private:
+    std::uint32_t key0_, key1_;
+    PhiloxBlock counter_;
+    PhiloxBlock block_{};
+    std::uint32_t used_ = 4;
+};
+
+}  // namespace etendue

@@ -1,0 +1,43 @@
+// Texture: a colour or a scalar over a surface, constant or from an image.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "renderer/image_io.h"
+#include "renderer/spectrum.h"
+#include "renderer/vec.h"
+
+namespace etendue {
+
+enum class ColorEncoding { sRgb, linear };
+enum class TextureWrap { repeat, clamp };
+
+/// Bilinear; texel centres at half-integers; v = 0 is the bottom row. 8-bit texels stay 8-bit in
+/// memory.
+class Texture {
+public:
+    /// A constant.
+    explicit Texture(Spectrum value);
+    /// `encoding` applies to 8-bit images only, and never to alpha; float images are linear.
+    Texture(Image image, ColorEncoding encoding, TextureWrap wrap = TextureWrap::repeat);
+
+    Spectrum color(Vec2 uv) const;
+    /// Images with alpha: alpha; else the first channel, in the given encoding.
+    float scalar(Vec2 uv) const;
+
+    bool isConstant() const { return image_ == nullptr; }
+    int width() const;  // 1 for a constant
+    int height() const;
+    /// One texel, decoded. 0 ≤ x < width, 0 ≤ y < height, y down from the top.
+    Spectrum texel(int x, int y) const;
+    Spectrum average() const;
+
+private:
+    Spectrum constant_;
+    std::shared_ptr<const Image> image_;
+    ColorEncoding encoding_ = ColorEncoding::linear;
+    TextureWrap wrap_ = TextureWrap::repeat;
+};
+
+}  // namespace etendue

@@ -1,11 +1,10 @@
 // Config: a TOML file with the line of every value kept, read through getters that check type and
-// range. toml++ is known to config.cpp alone.
+// range. toml++ is known to toml_document.cpp alone.
 //
 //     Config scene = Config::load("scene.toml");
 //     ConfigTable film = scene.root().table("film");
-//     int width = film.integer("width", {1, 65536});
-//     film.finish();                       // an unknown key is an error that names the nearest
-//     known one
+//     std::int64_t width = film.integer("width", {1, 65536});
+//     film.finish();  // an unknown key is an error that names the nearest known one
 #pragma once
 
 #include <cstdint>
@@ -80,6 +79,9 @@ public:
                        std::string_view fallback) const;
     /// An array of exactly `count` numbers (any length if count is 0).
     std::vector<double> numbers(std::string_view key, std::size_t count, Range range) const;
+    /// An array of such arrays: [[1, 2], [3, 4]].
+    std::vector<std::vector<double>> rows(std::string_view key, std::size_t columns,
+                                          Range range) const;
     std::vector<std::string> texts(
         std::string_view key) const;  // empty when missing; a lone string counts as one
     /// A file named by the key: made absolute against the folder of the file that names it. Must
@@ -107,14 +109,27 @@ public:
 
 private:
     struct Known;
+    struct Item;  // an element of an array, with its path
     const ConfigNode* find(std::string_view key) const;
+    const ConfigNode& require(std::string_view key, const std::string& expected) const;
+    std::vector<double> numbersIn(const ConfigNode& node, const std::string& path,
+                                  std::size_t count, Range range) const;
+    std::vector<Item> textItems(std::string_view key) const;
+    std::filesystem::path existingFile(const Item& item) const;
+    [[noreturn]] void failAt(const ConfigNode& node, const std::string& path,
+                             const std::string& message, ExitCode code = ExitCode::badInput) const;
+    [[noreturn]] void failType(const ConfigNode& node, const std::string& path,
+                               const std::string& expected) const;
+
     std::shared_ptr<const ConfigNode> node_;
     std::string path_;  // "camera", "material[2]": for messages
     std::shared_ptr<Known> known_;
 };
 
+/// A document. Copies are independent, and tables taken from one before a change keep what it was.
 class Config {
 public:
+    Config();  // an empty document
     /// Throws InputError: missing file, not TOML (with line), larger than 16 MB, nested or dotted
     /// deeper than 64. Never overflows the stack, whatever the bytes.
     static Config load(const std::filesystem::path& file);
@@ -125,17 +140,19 @@ public:
     /// is the entry's name or its index in an array of tables), value in TOML syntax; a bare word
     /// counts as a string. `assignment` is "key=value". Errors name "-s key=value" in place of the
     /// file. Setting a key inside a table that does not exist makes it, but an array's entry must
-    /// exist.
+    /// exist. A relative file name set here is taken from the current folder.
     void set(std::string_view assignment);
 
     /// Appends the other document's arrays of tables to this one's and adds its tables' keys; a key
-    /// that both set to a value is an error that names both lines. Used for `include`.
+    /// that both set to a value is an error that names both lines. Used for `include`, so the other
+    /// document's own top-level `include` stays behind: whoever merges has followed it already.
     void merge(const Config& other);
 
     ConfigTable root() const;
 
 private:
-    std::shared_ptr<ConfigNode> root_;
+    explicit Config(std::shared_ptr<const ConfigNode> root) : root_(std::move(root)) {}
+    std::shared_ptr<const ConfigNode> root_;  // never changed, only replaced
 };
 
 /// The candidate with the smallest edit distance (with transpositions) to `name`, if it is close

@@ -1,0 +1,40 @@
+#include "lens/ideal_lens.h"
+
+#include <cmath>
+
+// Numbers in parentheses are the equations of docs/camera.md.
+
+namespace etendue {
+
+std::optional<ExitRay> IdealLens::trace(SensorPoint sensor, AperturePoint aperture) const {
+    const double v = sensorDistanceMm;
+    const Eigen::Vector2d q = (aperture.mm - sensor.mm) / v;  // (5)
+    const double cosSquared = 1.0 / (1.0 + q.squaredNorm());
+    const double throughput = cosSquared * cosSquared / (v * v);  // J of (5)
+    if (!(throughput > 0.0)) return {};                           // so oblique that it underflows
+
+    const Eigen::Vector2d slope = -sensor.mm / v - aperture.mm * focusCurvaturePerMm;  // (6)
+    const double inverseLength = 1.0 / std::sqrt(1.0 + slope.squaredNorm());
+
+    ExitRay ray;
+    ray.origin << aperture.mm, 0.0;
+    ray.direction << slope * inverseLength, inverseLength;
+    ray.originBySensor.setZero();
+    // ∂slope/∂s = −1/v; normalising the direction takes away what would lengthen it.
+    ray.directionBySensor = ray.direction * ray.direction.head<2>().transpose();
+    ray.directionBySensor.topRows<2>() -= Eigen::Matrix2d::Identity();
+    ray.directionBySensor *= inverseLength / v;
+    ray.throughput = throughput;
+    return ray;
+}
+
+std::optional<SensorPoint> IdealLens::connect(const Eigen::Vector3d& targetMm,
+                                              AperturePoint aperture) const {
+    if (!(targetMm.z() > 0.0)) return {};
+    const Eigen::Vector2d slope = (targetMm.head<2>() - aperture.mm) / targetMm.z();
+    const Eigen::Vector2d sensor = -sensorDistanceMm * (slope + aperture.mm * focusCurvaturePerMm);
+    if (!sensor.allFinite()) return {};  // the target is all but in the lens's plane
+    return SensorPoint{sensor};
+}
+
+}  // namespace etendue

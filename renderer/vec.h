@@ -70,7 +70,7 @@ T length(Vec3T<T> a) {
 /// The caller knows that `a` is not zero.
 template <class T>
 Vec3T<T> normalize(Vec3T<T> a) {
-    return a / length(a);
+    return a * (T{1} / length(a));
 }
 
 template <class T>

@@ -13,15 +13,18 @@ namespace etendue {
 enum class ColorEncoding { sRgb, linear };
 enum class TextureWrap { repeat, clamp };
 
-/// Bilinear; texel centres at half-integers; v = 0 is the bottom row. 8-bit texels stay 8-bit in
-/// memory.
+/// Bilinear, in linear light; texel centres at half-integers; v = 0 is the bottom edge. 8-bit
+/// texels stay 8-bit in memory; copies share them. Any uv will do: a coordinate that is not finite
+/// counts as 0.
 class Texture {
 public:
     /// A constant.
     explicit Texture(Spectrum value);
-    /// `encoding` applies to 8-bit images only, and never to alpha; float images are linear.
+    /// `encoding` applies to images of 8- or 16-bit integers (Image::isEncoded) only, and never to
+    /// alpha; float images are linear. `image` has 1 to 4 channels and at least one pixel.
     Texture(Image image, ColorEncoding encoding, TextureWrap wrap = TextureWrap::repeat);
 
+    /// Colours of images have 0 in the last lane; grey ones are equal in the others.
     Spectrum color(Vec2 uv) const;
     /// Images with alpha: alpha; else the first channel, in the given encoding.
     float scalar(Vec2 uv) const;
@@ -31,6 +34,7 @@ public:
     int height() const;
     /// One texel, decoded. 0 ≤ x < width, 0 ≤ y < height, y down from the top.
     Spectrum texel(int x, int y) const;
+    /// The mean of the texels, summed in double: that of color() over the unit square, too.
     Spectrum average() const;
 
 private:

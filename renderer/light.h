@@ -67,7 +67,8 @@ public:
     /// Emitted flux in W (mean of the lanes), or an estimate of it: lights are chosen by it.
     virtual float power() const = 0;
 
-    /// Empty when the light cannot be seen from there (its dark side, outside the spot's cone).
+    /// Empty when the light cannot be seen from there (its dark side, outside the spot's cone), and
+    /// from so near or so far that floats cannot hold the density or the result.
     virtual std::optional<LightSample> sample(Vec3 receiver, Vec2 u) const = 0;
 
     /// Radiance towards the receiver from where a ray met the light; zero for a Dirac light.
@@ -100,8 +101,10 @@ std::unique_ptr<Light> makeAreaLight(std::vector<EmissiveTriangle> triangles, Sp
 /// Uniform radiance from all directions.
 std::unique_ptr<Light> makeConstantLight(Spectrum radiance, BoundingSphere scene);
 
-/// Latitude-longitude image, importance-sampled. `worldFromLight` is a rotation; the image's centre
-/// column looks along the light's +z (see environment_light.cpp), its top row is +y.
+/// Latitude-longitude image, importance-sampled. `worldFromLight` is a rotation; in the light's
+/// space the image's centre column lies towards +z, its top row towards +y and its right half
+/// towards −x: to the right of an upright viewer inside (see environment_light.cpp). Throws
+/// InputError for negative texels.
 std::unique_ptr<Light> makeEnvironmentLight(std::shared_ptr<const Texture> image, float scale,
                                             const Transform& worldFromLight, BoundingSphere scene);
 

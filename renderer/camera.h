@@ -17,7 +17,7 @@ namespace etendue {
 /// A ray from the lens into the scene, in world space.
 struct CameraRay {
     Vec3 origin;
-    Vec3 direction;  // unit
+    Vec3 direction;  // unit, to float precision
     float weight;    // J τ |A| / N of equation (1), times the exposure: radiance → pixel value
     // The footprint's two parts: how the ray moves with the film point, aperture point held fixed.
     std::array<Vec3, 2> originByPixel;     // m per pixel
@@ -31,6 +31,8 @@ struct CameraConnection {
     float distance;  // m, from ray.origin to the scene point
 };
 
+/// Film x, to the right, is the sensor's +x and film y, down, its +y: the lens turns the picture by
+/// 180°, and so does a lens space of +y up, +z forward, whose +x is at the viewer's left.
 struct CameraSettings {
     int width = 0, height = 0;    // pixels of the full frame
     double sensorWidthMm = 36.0;  // pixels are square
@@ -40,6 +42,8 @@ struct CameraSettings {
 
 class Camera {
 public:
+    /// Throws std::invalid_argument for settings that make no picture, and for a lens that lets no
+    /// light through to the sensor's centre, by which brightness is normalised.
     Camera(std::shared_ptr<const LensModel> lens, const CameraSettings& settings);
 
     /// The ray from film point `film` (pixels, full frame; need not lie inside it) through the
@@ -48,8 +52,9 @@ public:
                                        const Wavelengths& wavelengths) const;
 
     /// The film point from which the ray through that same aperture point meets `scenePoint`. Empty
-    /// when there is none. The importance of the connection is ray.weight · pdfArea(ray, …),
-    /// exactly equation (1) after the change of variables from film to scene.
+    /// when there is none, and on an image of the aperture point, where every film point would do.
+    /// The importance of the connection is ray.weight · pdfArea(ray, …), exactly equation (1) after
+    /// the change of variables from film to scene.
     std::optional<CameraConnection> connect(Vec3 scenePoint, Vec2 apertureUniform,
                                             const Wavelengths& wavelengths) const;
 
@@ -58,20 +63,23 @@ public:
     Vec3 forward() const;
 
 private:
-    std::optional<CameraRay> trace(SensorPoint sensor, AperturePoint aperture,
-                                   double wavelengthNm) const;
-    SensorPoint sensorFromFilm(Vec2 film) const;
+    CameraRay worldRay(const ExitRay& exit) const;
 
     std::shared_ptr<const LensModel> lens_;
     CameraSettings settings_;
+    Transform lensFromWorld_;
     double pixelMm_ = 0.0;
-    double weightScale_ = 0.0;  // |A| / N · 2^exposure
+    double weightScale_ = 0.0;  // |A| / N of equation (1) times 2^exposureStops, mm²
 };
 
 /// Equation (2): density per camera sample of one pixel, 1/m², at the point where `ray` meets a
-/// surface at `distance` with unit normal `normal`.
+/// surface at the finite `distance` with unit normal `normal`. Zero on a surface seen edge-on;
+/// else infinite where the footprint vanishes, on an image of the aperture point.
 float pdfArea(const CameraRay& ray, float distance, Vec3 normal);
-/// Its limit at infinity, 1/sr.
+/// Its limit at infinity, 1/sr. Infinite where the lens collimates.
 float pdfSolidAngle(const CameraRay& ray);
+/// ray.weight · pdfArea(ray, distance, normal), rounded once: finite even where the density alone
+/// would leave a float's range.
+float importance(const CameraRay& ray, float distance, Vec3 normal);
 
 }  // namespace etendue

@@ -1,0 +1,153 @@
+#include "renderer/camera.h"
+
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+namespace etendue {
+
+namespace {
+
+// Numbers in parentheses are the equations of docs/camera.md.
+
+constexpr double metresPerMm = 1e-3;
+
+Eigen::Vector2d toEigen(Vec2 v) { return {v.x, v.y}; }
+Vec3d fromEigen(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Eigen::Vector2d filmCenter(const CameraSettings& settings) {
+    return {0.5 * settings.width, 0.5 * settings.height};
+}
+
+/// N / |A| of (1): the mean of J τ over the aperture, seen from the centre of the sensor.
+/// Blocked rays count as zero.
+double meanThroughputOnAxis(const LensModel& lens) {
+    // A Fibonacci lattice (Sloan and Joe 1994): it errs by about one in its number of points, even
+    // where an edge blocks part of the aperture.
+    constexpr int count = 10946, generator = 6765;
+    double sum = 0.0;
+    for (int i = 0; i < count; ++i) {
+        const Eigen::Vector2d u((i + 0.5) / count,
+                                static_cast<double>(std::int64_t{i} * generator % count) / count);
+        const std::optional<ExitRay> ray = lens.trace(
+            {Eigen::Vector2d::Zero()}, lens.sampleAperture(u), Wavelengths::rgbWavelengthNm);
+        if (ray) sum += ray->throughput;
+    }
+    return sum / count;
+}
+
+bool isRigid(const Transform& t) {
+    constexpr double tolerance = 1e-6;
+    const auto isOne = [](double value) { return std::abs(value - 1.0) <= tolerance; };
+    const auto isZero = [](double value) { return std::abs(value) <= tolerance; };
+    return isFinite(t.translation) && isOne(lengthSquared(t.x)) && isOne(lengthSquared(t.y)) &&
+           isOne(lengthSquared(t.z)) && isZero(dot(t.x, t.y)) && isZero(dot(t.y, t.z)) &&
+           isZero(dot(t.z, t.x)) && t.determinant() > 0.0;
+}
+
+/// The area that the parallelogram of `a` and `b` covers across the unit direction `d`.
+double areaAcross(Vec3d a, Vec3d b, Vec3d d) { return absDot(cross(a, b), d); }
+
+/// |det F| of (2): what one pixel covers across the ray at `distance`, m².
+double footprintArea(const CameraRay& ray, double distance) {
+    assert(std::isfinite(distance));
+    const auto column = [&](std::size_t i) {
+        return toDouble(ray.originByPixel[i]) + distance * toDouble(ray.directionByPixel[i]);
+    };
+    return areaAcross(column(0), column(1), toDouble(ray.direction));
+}
+
+/// numerator / area, with no NaN where both vanish: a numerator of zero stays zero.
+float perArea(double numerator, double area) {
+    return numerator == 0.0 ? 0.0f : static_cast<float>(numerator / area);
+}
+
+}  // namespace
+
+Camera::Camera(std::shared_ptr<const LensModel> lens, const CameraSettings& settings)
+    : lens_(std::move(lens)),
+      settings_(settings),
+      lensFromWorld_(settings.worldFromLens.inverse()),
+      pixelMm_(settings.sensorWidthMm / settings.width) {
+    if (settings.width <= 0 || settings.height <= 0)
+        throw std::invalid_argument("camera: width and height must be positive");
+    if (!(settings.sensorWidthMm > 0.0 && std::isfinite(settings.sensorWidthMm)))
+        throw std::invalid_argument("camera: the sensor's width must be positive");
+    if (!isRigid(settings.worldFromLens))
+        throw std::invalid_argument("camera: worldFromLens may only rotate and translate");
+    const double mean = meanThroughputOnAxis(*lens_);
+    if (!(mean > 0.0 && std::isfinite(mean)))
+        throw std::invalid_argument("camera: no light reaches the centre of the sensor");
+    weightScale_ = std::exp2(settings.exposureStops) / mean;
+    if (!(weightScale_ > 0.0 && std::isfinite(weightScale_)))
+        throw std::invalid_argument("camera: exposure out of range");
+}
+
+std::optional<CameraRay> Camera::sampleRay(Vec2 film, Vec2 apertureUniform,
+                                           const Wavelengths& wavelengths) const {
+    const SensorPoint sensor{(toEigen(film) - filmCenter(settings_)) * pixelMm_};  // (3)
+    const AperturePoint aperture = lens_->sampleAperture(toEigen(apertureUniform));
+    const std::optional<ExitRay> exit = lens_->trace(sensor, aperture, wavelengths.heroNm());
+    if (!exit) return {};
+    return worldRay(*exit);
+}
+
+std::optional<CameraConnection> Camera::connect(Vec3 scenePoint, Vec2 apertureUniform,
+                                                const Wavelengths& wavelengths) const {
+    const Vec3d target = lensFromWorld_.point(toDouble(scenePoint)) / metresPerMm;
+    const Eigen::Vector3d targetMm(target.x, target.y, target.z);
+    const AperturePoint aperture = lens_->sampleAperture(toEigen(apertureUniform));
+    const std::optional<SensorPoint> sensor =
+        lens_->connect(targetMm, aperture, wavelengths.heroNm());
+    if (!sensor) return {};
+    // The very ray that sampleRay would make, so that both directions share one weight and one
+    // footprint.
+    const std::optional<ExitRay> exit = lens_->trace(*sensor, aperture, wavelengths.heroNm());
+    if (!exit) return {};
+
+    const Eigen::Vector2d film = sensor->mm / pixelMm_ + filmCenter(settings_);  // (3)
+    CameraConnection connection;
+    connection.film = {static_cast<float>(film.x()), static_cast<float>(film.y())};
+    connection.ray = worldRay(*exit);
+    connection.distance = static_cast<float>((targetMm - exit->origin).norm() * metresPerMm);
+    const bool isBeyondFloat =
+        !isFinite(Vec3{connection.film.x, connection.film.y, connection.distance});
+    if (isBeyondFloat || footprintArea(connection.ray, connection.distance) == 0.0) return {};
+    return connection;
+}
+
+CameraRay Camera::worldRay(const ExitRay& exit) const {
+    const Transform& world = settings_.worldFromLens;
+    CameraRay ray;
+    ray.origin = toFloat(world.point(fromEigen(exit.origin) * metresPerMm));
+    ray.direction = toFloat(world.vector(fromEigen(exit.direction)));
+    ray.weight = static_cast<float>(exit.throughput * weightScale_);  // (4)
+    for (int i = 0; i < 2; ++i) {
+        const Vec3d origin = fromEigen(exit.originBySensor.col(i)) * (pixelMm_ * metresPerMm);
+        const Vec3d direction = fromEigen(exit.directionBySensor.col(i)) * pixelMm_;
+        const auto k = static_cast<std::size_t>(i);
+        ray.originByPixel[k] = toFloat(world.vector(origin));
+        ray.directionByPixel[k] = toFloat(world.vector(direction));
+    }
+    return ray;
+}
+
+Vec3 Camera::position() const { return toFloat(settings_.worldFromLens.translation); }
+Vec3 Camera::forward() const { return toFloat(settings_.worldFromLens.z); }
+
+float pdfArea(const CameraRay& ray, float distance, Vec3 normal) {
+    return perArea(absDot(toDouble(normal), toDouble(ray.direction)), footprintArea(ray, distance));
+}
+
+float importance(const CameraRay& ray, float distance, Vec3 normal) {
+    const double cosine = absDot(toDouble(normal), toDouble(ray.direction));
+    return perArea(ray.weight * cosine, footprintArea(ray, distance));
+}
+
+float pdfSolidAngle(const CameraRay& ray) {
+    return perArea(1.0, areaAcross(toDouble(ray.directionByPixel[0]),
+                                   toDouble(ray.directionByPixel[1]), toDouble(ray.direction)));
+}
+
+}  // namespace etendue

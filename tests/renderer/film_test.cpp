@@ -1,0 +1,242 @@
+#include "renderer/film.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "renderer/random.h"
+#include "statistics/statistics.h"
+
+namespace etendue {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+FrameWindow fullFrame(int width, int height) { return {width, height, 0, 0, width, height}; }
+
+constexpr FilmLayers everything{
+    .albedo = true, .normal = true, .depth = true, .position = true, .variance = true};
+
+/// The image whose first channel is called `name`.
+ExrChannels image(const Film& film, const std::string& name) {
+    for (const ExrChannels& channels : film.channels())
+        if (channels.names.front() == name) return channels;
+    FAIL("no channel " << name);
+    return {};
+}
+
+/// A sample that depends on where in the full frame it falls and on nothing else.
+void addNoise(Film& film, std::uint32_t firstSample, std::uint32_t count) {
+    const FrameWindow& w = film.window();
+    for (int y = w.y; y < w.y + w.height; ++y)
+        for (int x = w.x; x < w.x + w.width; ++x)
+            for (std::uint32_t sample = firstSample; sample < firstSample + count; ++sample) {
+                RandomStream random(5, static_cast<std::uint32_t>(y * w.fullWidth + x), sample,
+                                    RandomDomain::test);
+                const float r = random.next(), g = random.next(), b = random.next();
+                film.add(x, y, rgb(r, g, b));
+                if (random.next() < 0.5f)
+                    film.addFeatures(x, y, {rgb(b, r, g), {r, g, -b}, {g, b, r}, r + g});
+            }
+    film.addSamples(count);
+}
+
+TEST_CASE("Film: a pixel is the mean of its samples") {
+    Film film(fullFrame(3, 2));
+    film.add(0, 0, rgb(1, 2, 3));
+    film.add(0, 0, rgb(3, 0, 4));
+    film.add(2, 1, rgb(0, 8, 0));
+    film.addSamples(4);
+    const auto channels = film.channels();
+    REQUIRE(channels.size() == 1);
+    CHECK(channels[0].names == std::vector<std::string>{"R", "G", "B"});
+    std::vector<float> expected(3 * 2 * 3, 0.0f);
+    expected[0] = 1.0f;
+    expected[1] = 0.5f;
+    expected[2] = 1.75f;
+    expected[3 * 5 + 1] = 2.0f;
+    CHECK(channels[0].pixels == expected);
+    CHECK(film.samples() == 4);
+}
+
+TEST_CASE("Film: many small samples are not lost beside a large one") {
+    Film film(fullFrame(1, 1));
+    film.add(0, 0, rgb(16777216.0f, 0, 0));  // 2²⁴, to which a float adds no 1
+    constexpr int count = 1000000;
+    for (int i = 0; i < count; ++i) film.add(0, 0, rgb(1, 0, 0));
+    film.addSamples(1);
+    CHECK(image(film, "R").pixels[0] == 17777216.0f);
+}
+
+TEST_CASE("Film: beauty alone takes less than 64 bytes a pixel") {
+    const Film film(fullFrame(100, 10));
+    CHECK(film.state().sums.size() * sizeof(double) < 64 * 1000);
+    CHECK_FALSE(film.wantsFeatures());
+}
+
+TEST_CASE("Film: a crop is that window of the full frame") {
+    Film full(fullFrame(16, 9), everything);
+    const FrameWindow window{16, 9, 5, 2, 7, 4};
+    Film crop(window, everything);
+    addNoise(full, 0, 8);
+    addNoise(crop, 0, 8);
+    const auto fullChannels = full.channels(), cropChannels = crop.channels();
+    REQUIRE(fullChannels.size() == 6);
+    REQUIRE(cropChannels.size() == 6);
+    for (std::size_t k = 0; k < 6; ++k) {
+        CHECK(cropChannels[k].names == fullChannels[k].names);
+        const std::size_t n = cropChannels[k].names.size();
+        for (std::size_t y = 0; y < 4; ++y)
+            for (std::size_t x = 0; x < 7; ++x)
+                for (std::size_t i = 0; i < n; ++i)
+                    CHECK(cropChannels[k].pixels[(y * 7 + x) * n + i] ==
+                          fullChannels[k].pixels[((y + 2) * 16 + x + 5) * n + i]);
+    }
+}
+
+TEST_CASE("Film: merging two ranges of samples gives the render of their union") {
+    Film whole(fullFrame(6, 5), everything), first(fullFrame(6, 5), everything),
+        second(fullFrame(6, 5), everything);
+    addNoise(whole, 0, 16);
+    addNoise(first, 0, 5);
+    addNoise(second, 5, 11);
+    first.merge(second);
+    CHECK(first.samples() == 16);
+    REQUIRE(first.state().sums.size() == whole.state().sums.size());
+    for (std::size_t i = 0; i < whole.state().sums.size(); ++i)
+        // Sums of 16 terms below 2, added in another order.
+        CHECK(std::abs(first.state().sums[i] - whole.state().sums[i]) <= 16 * 32 * 0x1p-53);
+    Film other(fullFrame(5, 6), everything), fewer(fullFrame(6, 5));
+    CHECK_THROWS_AS(first.merge(other), std::invalid_argument);
+    CHECK_THROWS_AS(first.merge(fewer), std::invalid_argument);
+}
+
+TEST_CASE("Film: a render goes on from a saved state to the same bits") {
+    Film whole(fullFrame(6, 5), everything), stopped(fullFrame(6, 5), everything),
+        resumed(fullFrame(6, 5), everything);
+    addNoise(whole, 0, 7);
+    addNoise(whole, 7, 9);
+    addNoise(stopped, 0, 7);
+    resumed.restore(stopped.state());
+    addNoise(resumed, 7, 9);
+    CHECK(resumed.state().sums == whole.state().sums);
+    CHECK(resumed.samples() == whole.samples());
+    CHECK_THROWS_AS(resumed.restore({{1.0, 2.0}, 1, 0}), std::invalid_argument);
+}
+
+TEST_CASE("Film: normal, depth and position are means over what was met, albedo over all samples") {
+    Film film(fullFrame(2, 1), everything);
+    CHECK(film.wantsFeatures());
+    film.addFeatures(0, 0, {rgb(0.5f, 1, 0), {0, 0, 1}, {1, 2, 3}, 10.0f});
+    film.addFeatures(0, 0, {rgb(0.5f, 0, 0), {0, 1, 0}, {3, 4, 5}, 20.0f});
+    for (int i = 0; i < 4; ++i) film.add(0, 0, rgb(1, 1, 1));
+    film.addSamples(4);
+    CHECK(image(film, "albedo.R").pixels == std::vector<float>{0.25f, 0.25f, 0, 0, 0, 0});
+    CHECK(image(film, "normal.X").pixels == std::vector<float>{0, 0.5f, 0.5f, 0, 0, 0});
+    CHECK(image(film, "depth.Z").pixels == std::vector<float>{15, 0});
+    CHECK(image(film, "position.X").pixels == std::vector<float>{2, 3, 4, 0, 0, 0});
+}
+
+TEST_CASE("Film: each layer stands alone") {
+    const auto only = [](auto choose) {
+        FilmLayers layers;
+        choose(layers);
+        Film film(fullFrame(1, 1), layers);
+        film.add(0, 0, rgb(1, 1, 1));
+        film.add(0, 0, rgb(3, 1, 1));
+        film.addFeatures(0, 0, {rgb(0.5f, 0.5f, 0.5f), {0, 0, 1}, {1, 2, 3}, 10.0f});
+        film.addSamples(2);
+        const auto channels = film.channels();
+        REQUIRE(channels.size() == 2);
+        CHECK(channels[0].pixels == std::vector<float>{2, 1, 1});
+        return channels[1].pixels;
+    };
+    using Pixel = std::vector<float>;
+    CHECK(only([](FilmLayers& l) { l.albedo = true; }) == Pixel{0.25f, 0.25f, 0.25f});
+    CHECK(only([](FilmLayers& l) { l.normal = true; }) == Pixel{0, 0, 1});
+    CHECK(only([](FilmLayers& l) { l.depth = true; }) == Pixel{10});
+    CHECK(only([](FilmLayers& l) { l.position = true; }) == Pixel{1, 2, 3});
+    CHECK(only([](FilmLayers& l) { l.variance = true; }) == Pixel{1, 0, 0});
+}
+
+TEST_CASE("Film: the variance estimate is that of the pixel's mean, without bias") {
+    // Uniform numbers: variance 1/12; of the mean of n, 1/(12 n).
+    constexpr std::uint32_t n = 5;
+    Film film(fullFrame(100, 100), everything);
+    addNoise(film, 0, n);
+    const auto pixels = image(film, "variance.R").pixels;
+    const Summary summary = summarize(std::vector<double>(pixels.begin(), pixels.end()));
+    const double z = (summary.mean - 1.0 / (12.0 * n)) / summary.standardError;
+    CHECK(normalTwoSidedP(z) > 1e-3);
+    // Enough samples that a divisor of n² for n (n − 1) would show: it is off by 20 %.
+    CHECK(summary.standardError < 0.01 * summary.mean);
+}
+
+TEST_CASE("Film: the variance is zero for equal samples, and before there are two") {
+    constexpr int width = 100, count = 100;
+    Film film(fullFrame(width, 1), everything);
+    const auto addAll = [&] {
+        for (int x = 0; x < width; ++x) {
+            const float value = static_cast<float>(x + 1) / 97.0f;
+            film.add(x, 0, rgb(value, value, value));
+        }
+        film.addSamples(1);
+    };
+    addAll();
+    for (const float v : image(film, "variance.R").pixels) CHECK(v == 0.0f);
+    for (int i = 1; i < count; ++i) addAll();
+    for (const float v : image(film, "variance.R").pixels) {
+        CHECK(v >= 0.0f);
+        // Fewer than 2 n roundings of sums up to n · 1.04² by 2⁻⁵³, over n (n − 1).
+        CHECK(v <= 2.2f * count / (count - 1) * 0x1p-53f);
+    }
+}
+
+TEST_CASE("Film: a sample that is negative or not finite is counted, reported and left out") {
+    Film film(fullFrame(1, 1), everything);
+    CHECK(film.add(0, 0, rgb(1, 2, 3)));
+    CHECK_FALSE(film.add(0, 0, rgb(nan, 0, 0)));
+    CHECK_FALSE(film.add(0, 0, rgb(0, infinity, 0)));
+    CHECK_FALSE(film.add(0, 0, rgb(0, 0, -1e-20f)));
+    CHECK(film.badSamples() == 3);
+    const FilmFeatures good{rgb(1, 1, 1), {0, 0, 1}, {1, 2, 3}, 4.0f};
+    CHECK(film.addFeatures(0, 0, good));
+    const auto refuses = [&](auto spoil) {
+        FilmFeatures bad = good;
+        spoil(bad);
+        CHECK_FALSE(film.addFeatures(0, 0, bad));
+    };
+    refuses([](FilmFeatures& f) { f.albedo = rgb(0, nan, 0); });
+    refuses([](FilmFeatures& f) { f.normal.y = nan; });
+    refuses([](FilmFeatures& f) { f.position.z = infinity; });
+    refuses([](FilmFeatures& f) { f.depth = infinity; });
+    CHECK(film.badSamples() == 7);
+    film.addSamples(4);
+    CHECK(image(film, "R").pixels == std::vector<float>{0.25f, 0.5f, 0.75f});
+    CHECK(image(film, "depth.Z").pixels == std::vector<float>{4.0f});
+    for (const ExrChannels& channels : film.channels())
+        for (const float v : channels.pixels) CHECK(std::isfinite(v));
+}
+
+TEST_CASE("Film: before the first sample everything is zero") {
+    const Film film(fullFrame(2, 2), everything);
+    for (const ExrChannels& channels : film.channels())
+        for (const float v : channels.pixels) CHECK(v == 0.0f);
+}
+
+TEST_CASE("Film: a window without pixels or beyond the frame is refused") {
+    for (const FrameWindow& window :
+         {FrameWindow{10, 10, 0, 0, 0, 5}, FrameWindow{10, 10, 0, 0, 5, -1},
+          FrameWindow{10, 10, -1, 0, 5, 5}, FrameWindow{10, 10, 6, 0, 5, 5},
+          FrameWindow{10, 10, 0, 6, 5, 5}, FrameWindow{10, 10, 2147483647, 0, 5, 5},
+          FrameWindow{0, 0, 0, 0, 0, 0}})
+        CHECK_THROWS_AS(Film film(window), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace etendue

@@ -1,0 +1,234 @@
+#include "renderer/intersector.h"
+
+#include <embree3/rtcore.h>
+
+#include <bit>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+#include "renderer/material.h"
+
+namespace etendue {
+
+namespace {
+
+constexpr float largestCoordinate = 1e18f;  // beyond 1.8e18 Embree aborts the process
+
+bool isTraceable(const Ray& ray) {
+    const auto inside = [](Vec3 v) { return maxComponent(abs(v)) <= largestCoordinate; };
+    // Written so that NaN fails.
+    return isFinite(ray.origin) && isFinite(ray.direction) && inside(ray.origin) &&
+           inside(ray.direction) && maxComponent(abs(ray.direction)) > 0.0f &&
+           ray.maxDistance >= 0.0f;
+}
+
+void setRay(RTCRay& out, const Ray& ray) {
+    out.org_x = ray.origin.x;
+    out.org_y = ray.origin.y;
+    out.org_z = ray.origin.z;
+    out.dir_x = ray.direction.x;
+    out.dir_y = ray.direction.y;
+    out.dir_z = ray.direction.z;
+    out.tnear = 0.0f;  // origins are offset by their error bound instead
+    out.tfar = ray.maxDistance;
+    out.time = 0.0f;
+    out.mask = ~0u;
+    out.id = 0;
+    out.flags = 0;
+}
+
+void throwOnError(RTCDevice device, const char* doing) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_NONE) return;
+    const char* reason = error == RTC_ERROR_OUT_OF_MEMORY     ? "out of memory"
+                         : error == RTC_ERROR_UNSUPPORTED_CPU ? "processor not supported"
+                                                              : "internal error";
+    throw std::runtime_error(std::string("Embree: ") + reason + " while " + doing);
+}
+
+std::uint32_t mix(std::uint32_t h, std::uint32_t value) {
+    h = (h ^ value) * 0x9E3779B1u;
+    return h ^ (h >> 15);
+}
+
+/// A number in [0, 1) that depends on the ray and the triangle alone, so that opacity needs no
+/// random numbers and the bits are the same in any order of traversal.
+float existenceThreshold(const RTCFilterFunctionNArguments* args, std::uint32_t instance,
+                         std::uint32_t triangle) {
+    std::uint32_t h = mix(mix(0x85EBCA6Bu, instance), triangle);
+    const float coordinates[6] = {RTCRayN_org_x(args->ray, 1, 0), RTCRayN_org_y(args->ray, 1, 0),
+                                  RTCRayN_org_z(args->ray, 1, 0), RTCRayN_dir_x(args->ray, 1, 0),
+                                  RTCRayN_dir_y(args->ray, 1, 0), RTCRayN_dir_z(args->ray, 1, 0)};
+    for (const float c : coordinates) h = mix(h, std::bit_cast<std::uint32_t>(c));
+    h = mix(h, h >> 16);
+    return static_cast<float>(h >> 8) * 0x1p-24f;
+}
+
+}  // namespace
+
+struct Intersector::Embree {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    std::vector<RTCScene> meshScenes;  // one for each mesh that is placed more than once, else null
+    std::span<const Mesh> meshes;
+    std::span<const Instance> instances;
+
+    ~Embree() {
+        for (const RTCScene s : meshScenes)
+            if (s) rtcReleaseScene(s);
+        if (scene) rtcReleaseScene(scene);
+        if (device) rtcReleaseDevice(device);
+    }
+
+    /// Opacity as existence: with probability 1 − opacity the triangle is not there for this ray.
+    /// The probability of a path and its contribution share that factor, so it cancels in every
+    /// estimator.
+    static void filter(const RTCFilterFunctionNArguments* args) {
+        if (args->valid[0] == 0) return;
+        const auto& self = *static_cast<const Embree*>(args->geometryUserPtr);
+        const std::uint32_t outer = RTCHitN_instID(args->hit, 1, 0, 0);
+        const std::uint32_t index =
+            outer != RTC_INVALID_GEOMETRY_ID ? outer : RTCHitN_geomID(args->hit, 1, 0);
+        const std::uint32_t triangle = RTCHitN_primID(args->hit, 1, 0);
+        const Instance& instance = self.instances[index];
+        const Mesh& mesh = self.meshes[instance.mesh];
+        const Material& material = *instance.materials[mesh.materialOfTriangle[triangle]];
+        if (!material.opacity) return;
+        Vec2 uv{};
+        if (!mesh.textureCoordinates.empty()) {
+            const auto& corner = mesh.triangles[triangle];
+            const float b1 = RTCHitN_u(args->hit, 1, 0), b2 = RTCHitN_v(args->hit, 1, 0);
+            uv = mesh.textureCoordinates[corner[0]] * (1 - b1 - b2) +
+                 mesh.textureCoordinates[corner[1]] * b1 + mesh.textureCoordinates[corner[2]] * b2;
+        }
+        const bool exists =
+            existenceThreshold(args, index, triangle) < material.opacity->scalar(uv);
+        if (!exists) args->valid[0] = 0;
+    }
+
+    bool hasOpacity(std::uint32_t mesh) const {
+        for (const Instance& i : instances)
+            if (i.mesh == mesh)
+                for (const Material* m : i.materials)
+                    if (m->opacity) return true;
+        return false;
+    }
+
+    RTCGeometry makeTriangles(std::uint32_t meshIndex) {
+        const Mesh& mesh = meshes[meshIndex];
+        const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        void* positions =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                    sizeof(Vec3), mesh.positions.size());
+        void* triangles =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    sizeof(mesh.triangles[0]), mesh.triangles.size());
+        throwOnError(device, "allocating a mesh");
+        std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * sizeof(Vec3));
+        std::memcpy(triangles, mesh.triangles.data(),
+                    mesh.triangles.size() * sizeof(mesh.triangles[0]));
+        if (hasOpacity(meshIndex)) {
+            rtcSetGeometryUserData(geometry, this);
+            rtcSetGeometryIntersectFilterFunction(geometry, filter);
+            rtcSetGeometryOccludedFilterFunction(geometry, filter);
+        }
+        rtcCommitGeometry(geometry);
+        return geometry;
+    }
+
+    RTCScene commitNewScene(std::span<const std::pair<RTCGeometry, std::uint32_t>> geometries) {
+        const RTCScene s = rtcNewScene(device);
+        rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_HIGH);
+        for (const auto& [geometry, id] : geometries) {
+            rtcAttachGeometryByID(s, geometry, id);
+            rtcReleaseGeometry(geometry);
+        }
+        rtcCommitScene(s);
+        throwOnError(device, "building the scene");
+        return s;
+    }
+
+    RTCGeometry makeInstance(const Instance& instance) {
+        RTCScene& meshScene = meshScenes[instance.mesh];
+        if (!meshScene) {
+            const std::pair<RTCGeometry, std::uint32_t> only{makeTriangles(instance.mesh), 0u};
+            meshScene = commitNewScene({&only, 1});
+        }
+        const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(geometry, meshScene);
+        const Transform& t = instance.worldFromMesh;
+        float columns[12];
+        int next = 0;
+        for (const Vec3d& column : {t.x, t.y, t.z, t.translation})
+            for (int axis = 0; axis < 3; ++axis) columns[next++] = static_cast<float>(column[axis]);
+        rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+        rtcCommitGeometry(geometry);
+        return geometry;
+    }
+};
+
+Intersector::Intersector(std::span<const Mesh> meshes, std::span<const Instance> instances,
+                         int threads)
+    : embree_(std::make_unique<Embree>()) {
+    // The instruction set is pinned so that two machines find the same hits, bit for bit.
+    std::string settings = "threads=" + std::to_string(threads);
+#if defined(__x86_64__)
+    settings += ",isa=avx2";
+#endif
+    embree_->device = rtcNewDevice(settings.c_str());
+    throwOnError(embree_->device, "starting");
+    embree_->meshes = meshes;
+    embree_->instances = instances;
+    embree_->meshScenes.resize(meshes.size());
+    std::vector<std::pair<RTCGeometry, std::uint32_t>> geometries;
+    for (std::uint32_t i = 0; i < instances.size(); ++i) {
+        geometries.emplace_back(instances[i].isInWorldSpace
+                                    ? embree_->makeTriangles(instances[i].mesh)
+                                    : embree_->makeInstance(instances[i]),
+                                i);
+    }
+    embree_->scene = embree_->commitNewScene(geometries);
+}
+
+Intersector::~Intersector() = default;
+
+std::optional<RayHit> Intersector::closestHit(const Ray& ray) const {
+    if (!isTraceable(ray)) {
+        ++refusedRays_;
+        return std::nullopt;
+    }
+    RTCRayHit query;
+    setRay(query.ray, ray);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(embree_->scene, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    // On triangles of extreme proportions Embree may report a hit without a place.
+    if (!std::isfinite(query.hit.u) || !std::isfinite(query.hit.v) ||
+        !std::isfinite(query.ray.tfar)) {
+        ++refusedRays_;
+        return std::nullopt;
+    }
+    const bool isInstanced = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
+    return RayHit{isInstanced ? query.hit.instID[0] : query.hit.geomID, query.hit.primID,
+                  query.hit.u, query.hit.v, query.ray.tfar};
+}
+
+bool Intersector::isOccluded(const Ray& ray) const {
+    if (!isTraceable(ray)) {
+        ++refusedRays_;
+        return true;
+    }
+    RTCRay query;
+    setRay(query, ray);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(embree_->scene, &context, &query);
+    return query.tfar < 0.0f;
+}
+
+}  // namespace etendue

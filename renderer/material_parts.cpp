@@ -1,0 +1,182 @@
+// [[material]], and what an MTL entry means.
+#include <cmath>
+
+#include "renderer/bsdfs.h"
+#include "renderer/scene_parts.h"
+
+namespace etendue {
+
+namespace {
+
+constexpr float greyReflectance = 0.5f;
+
+Spectrum toSpectrum(Vec3 v) { return rgb(v.x, v.y, v.z); }
+
+Texture textureOr(const ConfigTable& table, std::string_view key, Spectrum fallback,
+                  LoadingScene& loading) {
+    if (!table.has(key)) return Texture(fallback);
+    if (table.isText(key))
+        return *loadTexture(table.file(key), ColorEncoding::sRgb, TextureWrap::repeat, loading);
+    return Texture(color(table, key, Range::unit()));
+}
+
+std::unique_ptr<Bsdf> conductorFrom(const ConfigTable& table) {
+    const auto roughness = static_cast<float>(table.number("roughness", Range::unit(), 0.0));
+    if (table.has("metal") && table.has("color"))
+        table.fail("metal", "a conductor has either a metal or a color");
+    if (table.has("color")) return makeConductor(color(table, "color", Range::unit()), roughness);
+    return makeConductor(metalOptics(table.choice("metal", metalNames())), roughness);
+}
+
+std::unique_ptr<Bsdf> bsdfFrom(const ConfigTable& table, LoadingScene& loading) {
+    const std::string type =
+        table.choice("type", {"diffuse", "conductor", "dielectric", "plastic"}, "diffuse");
+    const auto roughness = [&] {
+        return static_cast<float>(table.number("roughness", Range::unit(), 0.0));
+    };
+    const auto ior = [&] { return static_cast<float>(table.number("ior", {0.1, 10.0}, 1.5)); };
+    if (type == "conductor") return conductorFrom(table);
+    if (type == "dielectric") {
+        const Spectrum tint =
+            table.has("color") ? color(table, "color", Range::unit()) : rgb(1, 1, 1);
+        return makeDielectric(ior(), tint, roughness());
+    }
+    Texture reflectance =
+        textureOr(table, "color", Spectrum(rgb(1, 1, 1) * greyReflectance), loading);
+    if (type == "plastic") return makePlastic(std::move(reflectance), ior(), roughness());
+    return makeDiffuse(std::move(reflectance));
+}
+
+void loadOpacity(const ConfigTable& table, Material& material, LoadingScene& loading) {
+    if (!table.has("opacity")) return;
+    if (emits(material)) table.fail("opacity", "a material that emits cannot have an opacity");
+    if (table.isText("opacity"))
+        material.opacity = *loadTexture(table.file("opacity"), ColorEncoding::linear,
+                                        TextureWrap::repeat, loading);
+    else if (const double value = table.number("opacity", Range::unit()); value < 1.0)
+        material.opacity = Texture(Spectrum(static_cast<float>(value)));
+}
+
+/// Blinn–Phong's exponent as GGX roughness: α² = 2 / (n + 2) matches the widths of the two lobes
+/// (Walter et al. 2007), and α is the roughness squared.
+float roughnessFromShininess(float shininess) {
+    return std::sqrt(std::sqrt(2.0f / (std::max(shininess, 0.0f) + 2.0f)));
+}
+
+/// MTL values are whatever the exporter wrote; reflectance above 1 would create light.
+Spectrum reflectance(Vec3 v, const ObjMaterial& m, const char* key, LoadingScene& loading) {
+    const float top = maxComponent(v);
+    if (top <= 1.0f) return toSpectrum(v);
+    loading.notes.push_back("material '" + m.name + "': " + key + " above 1 scaled down to 1");
+    return toSpectrum(v / top);
+}
+
+bool isGlass(const ObjMaterial& m) {
+    const int i = m.illuminationModel;
+    return (i == 4 || i == 6 || i == 7 || i == 9) && m.indexOfRefraction > 1.0f;
+}
+
+Texture diffuseTexture(const ObjMaterial& m, LoadingScene& loading) {
+    if (!m.diffuseMap.empty())
+        return *loadTexture(m.diffuseMap, ColorEncoding::sRgb, TextureWrap::repeat, loading);
+    return Texture(reflectance(m.diffuse, m, "Kd", loading));
+}
+
+/// docs/scene-format.md, "What an MTL entry means".
+std::unique_ptr<Bsdf> bsdfFromMtl(const ObjMaterial& m, LoadingScene& loading) {
+    const bool isBlackDiffuse = m.diffuseMap.empty() && maxComponent(m.diffuse) <= 0.0f;
+    const bool isSpecular = maxComponent(m.specular) > 0.0f;
+    const float ior = m.indexOfRefraction > 1.0f ? m.indexOfRefraction : 1.5f;
+    if (m.metallic && *m.metallic >= 0.5f)
+        return makeConductor(reflectance(m.diffuse, m, "Kd", loading), m.roughness.value_or(0.5f));
+    if (isGlass(m))
+        return makeDielectric(m.indexOfRefraction, rgb(1, 1, 1), m.roughness.value_or(0.0f));
+    if (isSpecular && isBlackDiffuse) {
+        const bool isMirror = m.illuminationModel == 3 || m.illuminationModel == 5;
+        const float roughness = isMirror ? 0.0f : roughnessFromShininess(m.shininess);
+        return makeConductor(reflectance(m.specular, m, "Ks", loading),
+                             m.roughness.value_or(roughness));
+    }
+    if (m.roughness) return makePlastic(diffuseTexture(m, loading), ior, *m.roughness);
+    if (isSpecular && m.illuminationModel >= 2)
+        return makePlastic(diffuseTexture(m, loading), ior, roughnessFromShininess(m.shininess));
+    return makeDiffuse(diffuseTexture(m, loading));
+}
+
+Material* addMaterial(LoadingScene& loading) {
+    loading.parts.materials.push_back(std::make_unique<Material>());
+    return loading.parts.materials.back().get();
+}
+
+}  // namespace
+
+std::shared_ptr<const Texture> loadTexture(const std::filesystem::path& file,
+                                           ColorEncoding encoding, TextureWrap wrap,
+                                           LoadingScene& loading) {
+    const std::string key = file.string() +
+                            (encoding == ColorEncoding::sRgb ? "|srgb" : "|linear") +
+                            (wrap == TextureWrap::repeat ? "|repeat" : "|clamp");
+    std::shared_ptr<const Texture>& texture = loading.textures[key];
+    if (!texture) {
+        texture = std::make_shared<Texture>(readImage(file), encoding, wrap);
+        loading.files.push_back(file);
+    }
+    return texture;
+}
+
+Spectrum color(const ConfigTable& table, std::string_view key, Range range) {
+    const std::vector<double> v = table.numbers(key, 3, range);
+    return rgb(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
+}
+
+void loadMaterials(const std::vector<ConfigTable>& tables, LoadingScene& loading) {
+    for (const ConfigTable& table : tables) {
+        Material* material = addMaterial(loading);
+        material->name = table.text("name");
+        if (!loading.materials.emplace(material->name, material).second)
+            table.fail("name", "used by an earlier material");
+        material->bsdf = bsdfFrom(table, loading);
+        if (table.has("emission")) {
+            material->emission = color(table, "emission", Range::nonNegative());
+            material->isEmissionTwoSided = table.boolean("two_sided_emission", false);
+        }
+        loadOpacity(table, *material, loading);
+        table.finish();
+    }
+}
+
+const Material* findMaterial(const ConfigTable& table, const std::string& key,
+                             const LoadingScene& loading) {
+    std::vector<std::string> names;
+    for (const auto& [name, material] : loading.materials) names.push_back(name);
+    return loading.materials.at(table.choice(key, names));
+}
+
+const Material* addObjMaterial(const ObjMaterial& m, LoadingScene& loading) {
+    Material* material = addMaterial(loading);
+    material->name = m.name;
+    material->bsdf = bsdfFromMtl(m, loading);
+    material->emission = toSpectrum(m.emission);
+    const bool hasOpacity = !m.opacityMap.empty() || (m.opacity < 1.0f && !isGlass(m));
+    if (!hasOpacity) return material;
+    if (emits(*material)) {
+        loading.notes.push_back("material '" + m.name + "' emits: its opacity is ignored");
+    } else if (!m.opacityMap.empty()) {
+        material->opacity =
+            *loadTexture(m.opacityMap, ColorEncoding::linear, TextureWrap::repeat, loading);
+    } else {
+        material->opacity = Texture(Spectrum(m.opacity));
+    }
+    return material;
+}
+
+const Material* defaultMaterial(LoadingScene& loading) {
+    if (!loading.defaultMaterial) {
+        Material* grey = addMaterial(loading);
+        grey->bsdf = makeDiffuse(Texture(rgb(1, 1, 1) * greyReflectance));
+        loading.defaultMaterial = grey;
+    }
+    return loading.defaultMaterial;
+}
+
+}  // namespace etendue

@@ -1,0 +1,192 @@
+// [[mesh]] and [[instance]]: which triangles stand where, made of what.
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "renderer/mesh_normals.h"
+#include "renderer/scene_parts.h"
+#include "renderer/shapes.h"
+
+namespace etendue {
+
+namespace {
+
+constexpr Range segmentRange{3, 4096};
+
+/// A mesh and what each of its material slots stands for.
+struct DressedMesh {
+    std::uint32_t index = 0;
+    std::vector<const Material*> materials;
+};
+
+Mesh latheFrom(const ConfigTable& table) {
+    std::vector<Vec2> profile;
+    for (const std::vector<double>& row : table.rows("profile", 2, {-1e6, 1e6}))
+        profile.push_back({static_cast<float>(row[0]), static_cast<float>(row[1])});
+    return makeLathe(profile, static_cast<int>(table.integer("segments", segmentRange, 64)),
+                     static_cast<int>(table.integer("subdivisions", {1, 256}, 1)),
+                     static_cast<float>(table.number("crease_angle", {0, 180}, 40)));
+}
+
+struct Shape {
+    const char* name;
+    Mesh (*make)(const ConfigTable&);
+};
+
+int segments(const ConfigTable& table, int fallback) {
+    return static_cast<int>(table.integer("segments", segmentRange, fallback));
+}
+
+constexpr Shape shapes[] = {
+    {"sphere", [](const ConfigTable& t) { return makeSphere(segments(t, 64)); }},
+    {"rectangle",
+     [](const ConfigTable& t) {
+         return makeRectangle(static_cast<int>(t.integer("subdivisions", {1, 1000}, 1)));
+     }},
+    {"box", [](const ConfigTable&) { return makeBox(); }},
+    {"disc", [](const ConfigTable& t) { return makeDisc(segments(t, 64)); }},
+    {"cylinder",
+     [](const ConfigTable& t) { return makeCylinder(segments(t, 64), t.boolean("capped", true)); }},
+    {"torus",
+     [](const ConfigTable& t) {
+         return makeTorus(static_cast<float>(t.number("minor_radius", {1e-6, 1.0}, 0.25)),
+                          segments(t, 64),
+                          static_cast<int>(t.integer("minor_segments", segmentRange, 32)));
+     }},
+    {"lathe", latheFrom},
+};
+
+Mesh shapeFrom(const ConfigTable& table) {
+    std::vector<std::string> names;
+    for (const Shape& s : shapes) names.emplace_back(s.name);
+    const std::string name = table.choice("shape", names);
+    for (const Shape& s : shapes) {
+        if (name != s.name) continue;
+        try {
+            return s.make(table);
+        } catch (const std::invalid_argument& error) {
+            table.fail("shape", error.what());
+        }
+    }
+    table.fail("shape", "no such shape");
+}
+
+/// Slots by the file's material names; the scene file's own material of that name wins over the
+/// MTL's.
+std::vector<const Material*> dress(const Mesh& mesh, const std::vector<ObjMaterial>& fileMaterials,
+                                   LoadingScene& loading) {
+    std::vector<const Material*> slots;
+    for (const std::string& name : mesh.materialNames) {
+        const auto own = loading.materials.find(name);
+        const Material* slot = own == loading.materials.end() ? nullptr : own->second;
+        for (const ObjMaterial& m : fileMaterials)
+            if (!slot && m.name == name) slot = addObjMaterial(m, loading);
+        slots.push_back(slot ? slot : defaultMaterial(loading));
+    }
+    return slots;
+}
+
+DressedMesh addMesh(Mesh mesh, std::vector<const Material*> materials, LoadingScene& loading) {
+    loading.parts.meshes.push_back(std::move(mesh));
+    return {static_cast<std::uint32_t>(loading.parts.meshes.size() - 1), std::move(materials)};
+}
+
+DressedMesh addModelFile(const std::filesystem::path& file, LoadingScene& loading) {
+    ObjModel model = loadObj(file);
+    loading.files.insert(loading.files.end(), model.files.begin(), model.files.end());
+    for (const std::string& note : model.notes) loading.notes.push_back(note);
+    std::vector<const Material*> slots = dress(model.mesh, model.materials, loading);
+    return addMesh(std::move(model.mesh), std::move(slots), loading);
+}
+
+/// Every vertex must stay where float coordinates and Embree can handle it.
+void place(const DressedMesh& mesh, const Transform& worldFromMesh, const ConfigTable& table,
+           LoadingScene& loading) {
+    constexpr double largest = 1e15;
+    for (const Vec3& p : loading.parts.meshes[mesh.index].positions) {
+        const Vec3d world = worldFromMesh.point(toDouble(p));
+        if (!(maxComponent(abs(world)) <= largest))
+            table.fail("transform", "moves a vertex beyond 1e15 m");
+    }
+    loading.parts.placements.push_back({mesh.index, worldFromMesh, mesh.materials});
+}
+
+DressedMesh loadMesh(const ConfigTable& table, LoadingScene& loading) {
+    if (table.has("file") == table.has("shape"))
+        table.fail("file", "a mesh needs either a file or a shape");
+    DressedMesh mesh = table.has("file") ? addModelFile(table.file("file"), loading)
+                                         : addMesh(shapeFrom(table), {}, loading);
+    Mesh& geometry = loading.parts.meshes[mesh.index];
+    if (mesh.materials.empty()) mesh.materials = dress(geometry, {}, loading);
+    if (table.has("smooth")) {
+        if (table.boolean("smooth", true))
+            makeSmooth(geometry, static_cast<float>(table.number("smooth_angle", {0, 180}, 60)));
+        else
+            makeFlat(geometry);
+    }
+    if (table.has("material"))
+        for (const Material*& slot : mesh.materials)
+            slot = findMaterial(table, "material", loading);
+    return mesh;
+}
+
+}  // namespace
+
+Transform loadTransform(const ConfigTable& table, std::string_view key) {
+    Transform result;
+    for (const ConfigTable& step : table.tables(key)) {
+        const std::vector<std::string> keys = step.keys();
+        if (keys.size() != 1)
+            step.fail("", "a step is one of {scale = …}, {rotate = […]}, {translate = […]}");
+        Transform t;
+        if (step.has("scale")) {
+            const bool isUniform = !step.isArray("scale");
+            const double k = isUniform ? step.number("scale", {-1e12, 1e12}) : 1.0;
+            const Vec3d s = isUniform ? Vec3d{k, k, k} : vector3(step, "scale", {-1e12, 1e12});
+            t = Transform::scale(s);
+            if (!(std::abs(t.determinant()) > 0.0)) step.fail("scale", "must not be zero");
+        } else if (step.has("rotate")) {
+            const std::vector<double> r = step.numbers("rotate", 4, {-1e6, 1e6});
+            const Vec3d axis{r[0], r[1], r[2]};
+            if (!(lengthSquared(axis) > 0.0)) step.fail("rotate", "the axis must not be zero");
+            t = Transform::rotate(normalize(axis), r[3]);
+        } else if (step.has("translate")) {
+            t = Transform::translate(vector3(step, "translate"));
+        }
+        step.finish();
+        result = t * result;
+    }
+    return result;
+}
+
+void loadMeshes(const std::vector<ConfigTable>& meshes, const std::vector<ConfigTable>& instances,
+                LoadingScene& loading) {
+    std::map<std::string, DressedMesh> byName;
+    std::vector<std::string> names;
+    for (const ConfigTable& table : meshes) {
+        const DressedMesh mesh = loadMesh(table, loading);
+        if (table.has("name")) {
+            const std::string name = table.text("name");
+            if (!byName.emplace(name, mesh).second) table.fail("name", "used by an earlier mesh");
+            names.push_back(name);
+        }
+        const Transform transform = loadTransform(table, "transform");
+        if (!table.boolean("hidden", false)) place(mesh, transform, table, loading);
+        table.finish();
+    }
+    for (const ConfigTable& table : instances) {
+        DressedMesh mesh = byName.at(table.choice("mesh", names));
+        if (table.has("material"))
+            for (const Material*& slot : mesh.materials)
+                slot = findMaterial(table, "material", loading);
+        place(mesh, loadTransform(table, "transform"), table, loading);
+        table.finish();
+    }
+}
+
+void addModel(const std::filesystem::path& file, LoadingScene& loading) {
+    const DressedMesh mesh = addModelFile(file, loading);
+    loading.parts.placements.push_back({mesh.index, {}, mesh.materials});
+}
+
+}  // namespace etendue

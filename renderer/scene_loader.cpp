@@ -1,0 +1,203 @@
+#include "renderer/scene_loader.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "renderer/content_hash.h"
+#include "renderer/scene_parts.h"
+
+namespace etendue {
+
+namespace {
+
+constexpr int largestIncludeDepth = 16;
+
+/// The file and what it includes, as one document.
+Config loadWithIncludes(const std::filesystem::path& file,
+                        std::vector<std::filesystem::path>& files, int depth) {
+    Config config = Config::load(file);
+    files.push_back(file);
+    const ConfigTable root = config.root();
+    if (depth > largestIncludeDepth)
+        root.fail("include", "includes nest deeper than 16: does a file include itself?");
+    for (const std::filesystem::path& included : root.files("include"))
+        config.merge(loadWithIncludes(included, files, depth + 1));
+    return config;
+}
+
+FilmSettings loadFilm(const ConfigTable& table) {
+    FilmSettings film;
+    film.width = static_cast<int>(table.integer("width", {1, 32768}, film.width));
+    film.height = static_cast<int>(table.integer("height", {1, 32768}, film.height));
+    const std::string filter =
+        table.choice("filter", {"box", "gaussian", "blackman-harris"}, "box");
+    film.filter = filter == "box"        ? FilterKind::box
+                  : filter == "gaussian" ? FilterKind::gaussian
+                                         : FilterKind::blackmanHarris;
+    film.filterRadius =
+        static_cast<float>(table.number("filter_radius", {0.01, 16.0}, defaultRadius(film.filter)));
+    table.finish();
+    return film;
+}
+
+void loadEstimator(const ConfigTable& table, LoadedScene& loaded) {
+    EstimatorSettings& e = loaded.estimator;
+    e.kind = table.choice("kind", estimatorKinds(), e.kind);
+    e.maxDepth = static_cast<int>(table.integer("max_depth", {1, 10000}, e.maxDepth));
+    e.russianRouletteDepth = static_cast<int>(
+        table.integer("russian_roulette_depth", {0, 10000}, e.russianRouletteDepth));
+    loaded.samples = static_cast<int>(table.integer("samples", {1, 1 << 30}, loaded.samples));
+    table.finish();
+}
+
+/// Lens axes in the world: +z toward `to`, +y up as far as it can be, +x to the viewer's left
+/// (docs/camera.md, "Spaces").
+Transform lookAt(Vec3d from, Vec3d to, Vec3d up) {
+    const Vec3d z = normalize(to - from);
+    const Vec3d x = normalize(cross(up, z));
+    return {x, cross(z, x), z, from};
+}
+
+Transform placeCamera(const ConfigTable& table) {
+    const Vec3d from = vector3(table, "from"), to = vector3(table, "to");
+    const Vec3d up = table.has("up") ? vector3(table, "up") : Vec3d{0, 1, 0};
+    if (!(length(to - from) > 0.0)) table.fail("to", "must differ from 'from'");
+    if (!(length(cross(up, to - from)) > 1e-9 * length(up) * length(to - from)))
+        table.fail("up", "must not be parallel to the viewing direction");
+    return lookAt(from, to, up);
+}
+
+/// Focal length, or the horizontal field of view that the sensor's width turns into one.
+double focalLengthMm(const ConfigTable& table, double sensorWidthMm) {
+    if (!table.has("fov")) return table.number("focal_length_mm", {1e-3, 1e5}, 50.0);
+    if (table.has("focal_length_mm")) table.fail("fov", "give either fov or focal_length_mm");
+    const double fovDegrees = table.number("fov", {0.01, 179.0});
+    return 0.5 * sensorWidthMm / std::tan(fovDegrees * std::numbers::pi / 360.0);
+}
+
+/// Distance in front of a thin lens, when `distance` is counted from the sensor as on a lens
+/// barrel: u + v = d with 1/u + 1/v = 1/f.
+double distanceFromLensMm(const ConfigTable& table, double distanceMm, double focalMm) {
+    if (std::isinf(distanceMm)) return distanceMm;
+    if (!(distanceMm > 4.0 * focalMm))
+        table.fail("focus_distance", "counted from the sensor, must exceed four focal lengths: " +
+                                         std::to_string(4e-3 * focalMm) + " m");
+    return 0.5 * (distanceMm + std::sqrt(distanceMm * (distanceMm - 4.0 * focalMm)));
+}
+
+void loadCamera(const ConfigTable& table, LoadedScene& loaded) {
+    CameraSettings settings;
+    settings.width = loaded.film.width;
+    settings.height = loaded.film.height;
+    settings.worldFromLens = placeCamera(table);
+    settings.sensorWidthMm = table.number("sensor_width_mm", {1e-3, 1e5}, 36.0);
+    settings.exposureStops = table.number("exposure", {-60, 60}, 0.0);
+    const std::string model = table.choice("model", {"pinhole", "thin-lens"}, "pinhole");
+    const double focalMm = focalLengthMm(table, settings.sensorWidthMm);
+    std::shared_ptr<const LensModel> lens;
+    if (model == "pinhole") {
+        lens = makePinhole(focalMm);
+    } else {
+        loaded.fNumber = table.number("f_number", {0.1, 1e4});
+        loaded.focusDistance = table.number("focus_distance", {1e-6, Range::infinity});
+        const double u = distanceFromLensMm(table, loaded.focusDistance * 1e3, focalMm);
+        lens = makeThinLens(focalMm, u, 0.5 * focalMm / loaded.fNumber);
+    }
+    table.finish();
+    loaded.camera = std::make_unique<Camera>(std::move(lens), settings);
+}
+
+/// Where nobody placed a camera: outside the scene's bounds, from the front, a little from the
+/// right and above, with all of it in view.
+void addAutomaticCamera(LoadedScene& loaded) {
+    constexpr double fovDegrees = 35.0;
+    const BoundingSphere bounds = loaded.scene->bounds();
+    CameraSettings settings;
+    settings.width = loaded.film.width;
+    settings.height = loaded.film.height;
+    const double narrow = std::min(1.0, static_cast<double>(settings.height) / settings.width);
+    const double halfTangent = narrow * std::tan(fovDegrees * std::numbers::pi / 360.0);
+    const double distance = bounds.radius * std::sqrt(1.0 + 1.0 / (halfTangent * halfTangent));
+    const Vec3d center = toDouble(bounds.center);
+    settings.worldFromLens =
+        lookAt(center + normalize(Vec3d{0.45, 0.35, 1.0}) * distance, center, {0, 1, 0});
+    const double focalMm =
+        0.5 * settings.sensorWidthMm / std::tan(fovDegrees * std::numbers::pi / 360.0);
+    loaded.camera = std::make_unique<Camera>(makePinhole(focalMm), settings);
+}
+
+bool anythingEmits(const LoadingScene& loading) {
+    if (!loading.parts.lights.empty()) return true;
+    for (const Placement& p : loading.parts.placements)
+        for (const Material* m : p.materials)
+            if (emits(*m)) return true;
+    return false;
+}
+
+/// A sky for bare models: bright above, dim below, brightest to the upper left of the camera.
+Texture softSky() {
+    Image image{64, 32, 3, std::vector<float>()};
+    auto& pixels = std::get<std::vector<float>>(image.pixels);
+    const Vec3 key = normalize(Vec3{-0.6f, 0.8f, 0.5f});
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const float theta = pi * (static_cast<float>(y) + 0.5f) / 32.0f;
+            const float phi = 2.0f * pi * (static_cast<float>(x) + 0.5f) / 64.0f;
+            const Vec3 direction{std::sin(theta) * std::sin(phi), std::cos(theta),
+                                 -std::sin(theta) * std::cos(phi)};
+            const float facing = std::max(0.0f, dot(direction, key));
+            const float value = 0.35f + 0.25f * direction.y + 2.5f * square(square(square(facing)));
+            for (const float tint : {0.97f, 1.0f, 1.04f}) pixels.push_back(value * tint);
+        }
+    return Texture(std::move(image), ColorEncoding::linear, TextureWrap::clamp);
+}
+
+void addSoftLight(LoadingScene& loading) {
+    const auto sky = std::make_shared<const Texture>(softSky());
+    loading.parts.lights.push_back(
+        [sky](BoundingSphere bounds) { return makeEnvironmentLight(sky, 1.0f, {}, bounds); });
+    loading.notes.push_back("nothing emits light: a soft sky was added");
+}
+
+LoadedScene finish(LoadedScene loaded, LoadingScene loading, const LoadOptions& options) {
+    loaded.hash = contentHash(loading.files, options.overrides);
+    loaded.notes = std::move(loading.notes);
+    loaded.scene = std::make_unique<Scene>(std::move(loading.parts), options.threads);
+    if (!loaded.camera) addAutomaticCamera(loaded);
+    return loaded;
+}
+
+}  // namespace
+
+Vec3d vector3(const ConfigTable& table, std::string_view key, Range range) {
+    const std::vector<double> v = table.numbers(key, 3, range);
+    return {v[0], v[1], v[2]};
+}
+
+LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
+    LoadedScene loaded;
+    LoadingScene loading;
+    const bool isModel = file.extension() == ".obj" || file.extension() == ".OBJ";
+    Config config = isModel ? Config::parse("", file) : loadWithIncludes(file, loading.files, 0);
+    for (const std::string& assignment : options.overrides) config.set(assignment);
+    const ConfigTable root = config.root();
+    root.files("include");
+    loaded.film = loadFilm(root.table("film"));
+    loadEstimator(root.table("estimator"), loaded);
+    if (root.has("camera")) loadCamera(root.table("camera"), loaded);
+    loadMaterials(root.tables("material"), loading);
+    if (isModel) addModel(file, loading);
+    loadMeshes(root.tables("mesh"), root.tables("instance"), loading);
+    loadLights(root.tables("light"), loading);
+    root.finish();
+    if (!anythingEmits(loading)) {
+        if (isModel)
+            addSoftLight(loading);
+        else
+            loading.notes.push_back("nothing in the scene emits light: the picture will be black");
+    }
+    return finish(std::move(loaded), std::move(loading), options);
+}
+
+}  // namespace etendue

@@ -1,0 +1,45 @@
+// Scene files → Scene, Camera and settings. docs/scene-format.md describes the file.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/config.h"
+#include "renderer/camera.h"
+#include "renderer/estimator.h"
+#include "renderer/filter.h"
+#include "renderer/scene.h"
+
+namespace etendue {
+
+struct FilmSettings {
+    int width = 720, height = 480;
+    FilterKind filter = FilterKind::box;
+    float filterRadius = 0.5f;  // pixels
+};
+
+struct LoadedScene {
+    std::unique_ptr<Scene> scene;
+    std::unique_ptr<Camera> camera;
+    FilmSettings film;
+    EstimatorSettings estimator;
+    int samples = 64;
+    std::vector<std::string> notes;  // what the user should know, but what is not an error
+    std::string hash;  // of the bytes of every file read and of the overrides, as 32 hex digits
+    // For the image's metadata.
+    double fNumber = 0.0;        // 0: pinhole
+    double focusDistance = 0.0;  // m, 0: everything is sharp
+};
+
+struct LoadOptions {
+    std::vector<std::string> overrides;  // "key=value", after the file
+    int threads = 1;
+};
+
+/// `file` is a scene (.toml) or a bare model (.obj), which gets a camera and, if nothing in it
+/// emits, a soft light. Throws InputError.
+LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options);
+
+}  // namespace etendue

@@ -1,0 +1,52 @@
+// The steps of loadScene, one per table of the scene file. Private to the loader.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/config.h"
+#include "renderer/obj_loader.h"
+#include "renderer/scene.h"
+
+namespace etendue {
+
+/// What loading gathers on its way.
+struct LoadingScene {
+    SceneParts parts;
+    std::vector<std::string> notes;
+    std::vector<std::filesystem::path> files;          // every file read, for the hash
+    std::map<std::string, const Material*> materials;  // the scene file's own, by name
+    std::map<std::string, std::shared_ptr<const Texture>> textures;  // by path and encoding
+    const Material* defaultMaterial = nullptr;
+};
+
+/// [[material]]
+void loadMaterials(const std::vector<ConfigTable>& tables, LoadingScene& loading);
+/// The material that `name` means in the scene file. Throws at `key` of `table` if there is none.
+const Material* findMaterial(const ConfigTable& table, const std::string& key,
+                             const LoadingScene& loading);
+/// What an MTL entry means here; docs/scene-format.md has the table.
+const Material* addObjMaterial(const ObjMaterial& material, LoadingScene& loading);
+/// The grey of everything that names no material.
+const Material* defaultMaterial(LoadingScene& loading);
+std::shared_ptr<const Texture> loadTexture(const std::filesystem::path& file,
+                                           ColorEncoding encoding, TextureWrap wrap,
+                                           LoadingScene& loading);
+Spectrum color(const ConfigTable& table, std::string_view key, Range range);
+
+/// [[mesh]] and [[instance]]
+void loadMeshes(const std::vector<ConfigTable>& meshes, const std::vector<ConfigTable>& instances,
+                LoadingScene& loading);
+/// A model with the materials of its MTL, where no scene file says otherwise. Returns its index.
+void addModel(const std::filesystem::path& file, LoadingScene& loading);
+/// transform = [ {scale = …}, {rotate = […]}, {translate = […]} ], the first one applied first.
+Transform loadTransform(const ConfigTable& table, std::string_view key);
+
+/// [[light]]
+void loadLights(const std::vector<ConfigTable>& tables, LoadingScene& loading);
+
+Vec3d vector3(const ConfigTable& table, std::string_view key, Range range = Range::any());
+
+}  // namespace etendue

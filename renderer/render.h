@@ -1,0 +1,52 @@
+// The render loop: passes over the image, the same bits for any number of threads and passes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "renderer/camera.h"
+#include "renderer/estimator.h"
+#include "renderer/film.h"
+#include "renderer/filter.h"
+#include "renderer/scene.h"
+
+namespace etendue {
+
+struct RenderSettings {
+    std::uint32_t samples = 64;  // per pixel
+    std::uint64_t seed = 0;
+    int threads = 1;
+    double timeLimitSeconds = std::numeric_limits<double>::infinity();
+};
+
+struct RenderProgress {
+    std::uint32_t samplesDone = 0, samplesTarget = 0;  // per pixel
+    double seconds = 0.0;
+    double cameraSamplesPerSecond = 0.0;  // of the whole image
+};
+
+/// A sample that was not a finite, non-negative number. It can be traced again from these numbers.
+struct BadSample {
+    int x = 0, y = 0;  // pixel of the full frame
+    std::uint32_t sample = 0;
+};
+
+struct RenderResult {
+    std::uint32_t samples = 0;  // per pixel
+    double seconds = 0.0;
+    bool wasInterrupted = false;  // by onPass
+    std::uint64_t badSampleCount = 0;
+    std::vector<BadSample> badSamples;  // the first few
+    std::uint64_t refusedRays = 0;      // see Intersector
+};
+
+/// Adds samples to every pixel of the film's window until the count or the time is reached; it ends
+/// between passes only, so that every pixel has the same count. `onPass` is called between passes
+/// and returns false to stop.
+RenderResult render(const Scene& scene, const Camera& camera, const Estimator& estimator,
+                    const Filter& filter, Film& film, const RenderSettings& settings,
+                    const std::function<bool(const RenderProgress&)>& onPass);
+
+}  // namespace etendue

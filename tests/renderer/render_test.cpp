@@ -1,0 +1,238 @@
+#include "renderer/render.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "statistics/statistics.h"
+#include "tests/support/scenes.h"
+
+using namespace etendue;
+
+namespace {
+
+/// A little of everything: glossy, glass, instances, three kinds of light, a thin lens.
+const std::string mixedScene = R"(
+[film]
+width = 48
+height = 32
+[camera]
+model = "thin-lens"
+from = [0, 1.2, 4]
+to = [0, 0.6, 0]
+f_number = 0.2
+focus_distance = 4
+[[material]]
+name = "floor"
+type = "plastic"
+color = [0.5, 0.4, 0.3]
+roughness = 0.4
+[[material]]
+name = "glass"
+type = "dielectric"
+[[material]]
+name = "gold"
+type = "conductor"
+metal = "gold"
+roughness = 0.3
+[[material]]
+name = "lamp"
+color = [0, 0, 0]
+emission = [8, 7, 5]
+[[mesh]]
+shape = "rectangle"
+material = "floor"
+transform = [{scale = 5}, {rotate = [1, 0, 0, -90]}]
+[[mesh]]
+name = "ball"
+shape = "sphere"
+hidden = true
+[[instance]]
+mesh = "ball"
+material = "glass"
+transform = [{scale = 0.5}, {translate = [-0.6, 0.5, 0]}]
+[[instance]]
+mesh = "ball"
+material = "gold"
+transform = [{scale = 0.5}, {translate = [0.6, 0.5, 0]}]
+[[mesh]]
+shape = "disc"
+material = "lamp"
+transform = [{scale = 0.5}, {rotate = [1, 0, 0, 90]}, {translate = [0, 3, 0]}]
+[[light]]
+type = "constant"
+radiance = [0.1, 0.15, 0.3]
+[[light]]
+type = "point"
+position = [2, 2, 2]
+intensity = [3, 3, 3]
+)";
+
+}  // namespace
+
+TEST_CASE("Render: the same bits with 1, 2 and 8 threads") {
+    const LoadedScene loaded = sceneFromText(mixedScene);
+    const std::vector<float> one = renderPixels(loaded, 4, 11, 1);
+    CHECK(renderPixels(loaded, 4, 11, 2) == one);
+    CHECK(renderPixels(loaded, 4, 11, 8) == one);
+    CHECK(renderPixels(loaded, 4, 12, 1) != one);
+}
+
+TEST_CASE("Render: a crop is the window of the full frame, bit for bit") {
+    const LoadedScene loaded = sceneFromText(mixedScene);
+    const std::vector<float> full = renderPixels(loaded, 4, 5);
+    Film film({48, 32, 10, 7, 20, 15});
+    RenderSettings settings;
+    settings.samples = 4;
+    settings.seed = 5;
+    render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator), Filter(FilterKind::box),
+           film, settings, {});
+    const std::vector<float> crop = film.channels().front().pixels;
+    for (std::size_t y = 0; y < 15; ++y)
+        for (std::size_t i = 0; i < 20 * 3; ++i)
+            REQUIRE(crop[y * 20 * 3 + i] == full[((y + 7) * 48 + 10) * 3 + i]);
+}
+
+TEST_CASE("Render: a filter changes no constant picture, at the border neither") {
+    for (const char* filter : {"box", "gaussian", "blackman-harris"}) {
+        const LoadedScene loaded = sceneFromText(
+            "[film]\nwidth = 8\nheight = 8\n[camera]\nfrom = [0, 0, 0]\nto = [0, 0, 1]\nfov = "
+            "0.02\n"
+            "[[light]]\ntype = \"constant\"\nradiance = [1, 1, 1]\n",
+            {std::string("film.filter=") + filter});
+        // cos⁴ over half a field of 0.01° differs from 1 by 2 tan² = 6e-8; the rest is float
+        // rounding.
+        for (const float v : renderPixels(loaded, 4, 1))
+            CHECK(v == doctest::Approx(1.0).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("Render: it stops between passes when asked, and says so") {
+    const LoadedScene loaded = sceneFromText(mixedScene);
+    Film film({48, 32, 0, 0, 48, 32});
+    RenderSettings settings;
+    settings.samples = 1000;
+    const RenderResult result = render(*loaded.scene, *loaded.camera,
+                                       *makeEstimator(loaded.estimator), Filter(FilterKind::box),
+                                       film, settings, [](const RenderProgress&) { return false; });
+    CHECK(result.wasInterrupted);
+    CHECK(result.samples == film.samples());
+    CHECK(result.samples < 1000);
+}
+
+namespace {
+
+/// `mixedScene` around a camera, all lengths times `scale`. Radiances do not change with scale, a
+/// point light's intensity goes with its square.
+std::string scaledScene(double scale) {
+    const auto number = [&](double v) {
+        char text[40];
+        std::snprintf(text, sizeof text, "%.9e", v * scale);
+        return std::string(text);
+    };
+    const auto vector = [&](double x, double y, double z) {
+        return "[" + number(x) + ", " + number(y) + ", " + number(z) + "]";
+    };
+    const std::string s = number(1.0);
+    char intensity[40];
+    std::snprintf(intensity, sizeof intensity, "%.9e", 3.0 * scale * scale);
+    const std::string i = intensity;
+    return "[film]\nwidth = 24\nheight = 16\n[camera]\nfov = 40\nfrom = " + vector(0, 1.2, 4) +
+           "\nto = " + vector(0, 0.6, 0) +
+           R"(
+[[material]]
+name = "floor"
+type = "plastic"
+color = [0.5, 0.4, 0.3]
+roughness = 0.4
+[[material]]
+name = "glass"
+type = "dielectric"
+roughness = 0.2
+[[material]]
+name = "lamp"
+color = [0, 0, 0]
+emission = [8, 7, 5]
+[[mesh]]
+shape = "rectangle"
+material = "floor"
+transform = [{scale = 5}, {rotate = [1, 0, 0, -90]}, {scale = )" +
+           s + R"(}]
+[[mesh]]
+name = "ball"
+shape = "sphere"
+hidden = true
+[[instance]]
+mesh = "ball"
+material = "glass"
+transform = [{scale = 0.5}, {translate = [-0.6, 0.5, 0]}, {scale = )" +
+           s + R"(}]
+[[instance]]
+mesh = "ball"
+transform = [{scale = 0.5}, {translate = [0.6, 0.5, 0]}, {scale = )" +
+           s + R"(}]
+[[mesh]]
+shape = "disc"
+material = "lamp"
+transform = [{scale = 0.5}, {rotate = [1, 0, 0, 90]}, {translate = [0, 3, 0]}, {scale = )" +
+           s + R"(}]
+[[light]]
+type = "point"
+position = )" +
+           vector(2, 2, 2) + "\nintensity = [" + i + ", " + i + ", " + i + "]\n";
+}
+
+std::vector<std::vector<float>> renderSeeds(const std::string& text, std::uint32_t samples,
+                                            std::uint64_t firstSeed, int seeds) {
+    const LoadedScene loaded = sceneFromText(text);
+    std::vector<std::vector<float>> pictures;
+    for (int i = 0; i < seeds; ++i)
+        pictures.push_back(
+            renderPixels(loaded, samples, firstSeed + static_cast<std::uint64_t>(i)));
+    return pictures;
+}
+
+double meanPixel(const std::vector<float>& pixels) {
+    return std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(pixels.size());
+}
+
+}  // namespace
+
+TEST_CASE("Render: a scene of 1e-4 or 1e6 times the size gives the same picture" *
+          doctest::test_suite("statistical")) {
+    const auto reference = renderSeeds(scaledScene(1.0), 128, 100, 24);
+    for (const double scale : {1e-4, 1e6}) {
+        CAPTURE(scale);
+        const PictureComparison independent =
+            comparePictures(renderSeeds(scaledScene(scale), 128, 200, 24), reference, 24, 4);
+        CAPTURE(independent.smallestP);
+        CHECK(independent.agree());
+        // With the same seeds the paths are the same but for rounding, so that the noise cancels.
+        const auto paired = renderSeeds(scaledScene(scale), 128, 100, 24);
+        std::vector<double> differences;
+        for (std::size_t i = 0; i < paired.size(); ++i)
+            differences.push_back(meanPixel(paired[i]) / meanPixel(reference[i]) - 1.0);
+        const Summary bias = summarize(differences);
+        CAPTURE(bias.mean);
+        CAPTURE(bias.standardError);
+        CHECK(std::abs(bias.mean) + studentQuantile(0.99, 23) * bias.standardError < 0.005);
+    }
+}
+
+TEST_CASE("Render: pictures of different lights are told apart" *
+          doctest::test_suite("statistical")) {
+    // The comparison itself must be able to fail: 2 % more light in one of the pictures.
+    // The scene is simple, so that its noise is below that.
+    const std::string plain =
+        "[film]\nwidth = 24\nheight = 16\n[camera]\nfov = 40\nfrom = [0, 1, 4]\nto = [0, 0, 0]\n"
+        "[[mesh]]\nshape = \"sphere\"\n[[light]]\ntype = \"constant\"\nradiance = [1, 1, 1]\n";
+    const auto a = renderSeeds(plain, 64, 300, 24);
+    auto b = renderSeeds(plain, 64, 400, 24);
+    CHECK(comparePictures(a, b, 24, 4).agree());
+    CHECK(comparePictures(a, b, 24, 4).isEquivalent(0.005));
+    for (auto& picture : b)
+        for (float& v : picture) v *= 1.02f;
+    CHECK_FALSE(comparePictures(a, b, 24, 4).agree());
+    CHECK_FALSE(comparePictures(a, b, 24, 4).isEquivalent(0.005));
+}

@@ -1,0 +1,125 @@
+// The command line. CLI11 is known to this file alone.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <map>
+
+#include "tools/render_command.h"
+#include "tools/version.h"
+
+namespace etendue {
+namespace {
+
+constexpr const char* learnMore = R"(
+Examples:
+  etendue render scenes/still-life/scene.toml -o out/picture.exr --preview out/picture.png
+  etendue render model.obj -o out/model.exr --samples 256 --size 640,480
+  etendue render scene.toml -o a.exr -s camera.f_number=5.6 -s material.glass.ior=1.7
+  etendue render scene.toml -o a.exr --time 60 --layers albedo,normal,depth
+  etendue check scene.toml
+
+Exit codes:
+  0 success   1 failure (disk full, out of memory)   64 wrong usage   65 bad input
+  66 missing file   75 stopped early, with a valid partial picture written
+
+docs/scene-format.md describes the scene files.)";
+
+std::string joinArguments(int argc, char** argv) {
+    std::string line = "etendue";
+    for (int i = 1; i < argc; ++i) line += fmt::format(" {}", argv[i]);
+    return line;
+}
+
+void addRender(CLI::App& app, RenderCommand& c) {
+    CLI::App* render =
+        app.add_subcommand("render", "Render a scene (.toml) or a model (.obj) to EXR");
+    render->add_option("scene", c.scene, "Scene file or bare model")->required();
+    render->add_option("-o,--output", c.output, "The picture: linear float EXR")->required();
+    render->add_option("--preview", c.preview, "Also write an sRGB PNG");
+    render->add_option("--exposure", c.previewExposureStops,
+                       "Stops added to the PNG, not to the EXR");
+    render
+        ->add_option("--samples", c.samples,
+                     "Samples per pixel (the scene's own: estimator.samples)")
+        ->check(CLI::Range(1, 1 << 30));
+    render->add_option("--time", c.timeLimitSeconds, "Stop after about so many seconds")
+        ->check(CLI::PositiveNumber);
+    render->add_option("--seed", c.seed, "Seed of the random numbers (0)");
+    render->add_option("--threads", c.threads, "Threads (all processors)")
+        ->check(CLI::Range(1, 1024));
+    render->add_option("--size", c.size, "WIDTH,HEIGHT of the full frame, in pixels")
+        ->delimiter(',')
+        ->expected(2)
+        ->check(CLI::Range(1, 32768));
+    render->add_option("--crop", c.crop, "X,Y,WIDTH,HEIGHT: only this window of the full frame")
+        ->delimiter(',')
+        ->expected(4)
+        ->check(CLI::Range(0, 32768));
+    render->add_option("--layers", c.layers, "More layers: albedo,normal,depth,position,variance")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"albedo", "normal", "depth", "position", "variance"}));
+    render
+        ->add_option("-s,--set", c.overrides,
+                     "KEY=VALUE overrides any key of the scene (repeatable)")
+        ->allow_extra_args(false);
+    const std::map<std::string, ProgressStyle> styles{{"auto", ProgressStyle::automatic},
+                                                      {"bar", ProgressStyle::bar},
+                                                      {"lines", ProgressStyle::lines},
+                                                      {"json", ProgressStyle::json}};
+    render->add_option("--progress", c.progress, "auto, bar, lines or json")
+        ->transform(CLI::CheckedTransformer(styles));
+    render->add_flag_callback(
+        "--quiet", [&c] { c.progress = ProgressStyle::quiet; }, "Print nothing but errors");
+}
+
+void addCheck(CLI::App& app, CheckCommand& c) {
+    CLI::App* check =
+        app.add_subcommand("check", "Load a scene, report what is in it, render nothing");
+    check->add_option("scene", c.scene, "Scene file or bare model")->required();
+    check
+        ->add_option("-s,--set", c.overrides,
+                     "KEY=VALUE overrides any key of the scene (repeatable)")
+        ->allow_extra_args(false);
+}
+
+ExitCode run(int argc, char** argv) {
+    CLI::App app(
+        "Étendue renders scenes through real photographic lenses, by unbiased light transport.",
+        "etendue");
+    app.set_version_flag("--version", std::string("etendue ") + version);
+    app.footer(learnMore);
+    app.require_subcommand(1);
+    app.get_formatter()->column_width(28);
+    RenderCommand render;
+    render.commandLine = joinArguments(argc, argv);
+    CheckCommand check;
+    addRender(app, render);
+    addCheck(app, check);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        const int code = app.exit(error);
+        return code == 0 ? ExitCode::success : ExitCode::usage;
+    }
+    return app.got_subcommand("render") ? runRender(render) : runCheck(check);
+}
+
+}  // namespace
+}  // namespace etendue
+
+int main(int argc, char** argv) {
+    using etendue::ExitCode;
+    try {
+        return static_cast<int>(etendue::run(argc, argv));
+    } catch (const etendue::InputError& error) {
+        fmt::print(stderr, "etendue: {}\n", error.what());
+        return static_cast<int>(error.code());
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "etendue: out of memory\n");
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "etendue: {}\n", error.what());
+    }
+    return static_cast<int>(ExitCode::failure);
+}

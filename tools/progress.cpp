@@ -1,0 +1,85 @@
+#include "tools/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace etendue {
+
+namespace {
+
+constexpr int barWidth = 28;
+
+double fractionDone(const RenderProgress& p) {
+    return p.samplesTarget == 0 ? 1.0 : static_cast<double>(p.samplesDone) / p.samplesTarget;
+}
+
+double secondsLeft(const RenderProgress& p) {
+    const double fraction = fractionDone(p);
+    return fraction > 0.0 ? p.seconds * (1.0 - fraction) / fraction : 0.0;
+}
+
+std::string formatRate(double perSecond) {
+    return perSecond >= 1e6 ? fmt::format("{:.2f} M samples/s", perSecond * 1e-6)
+                            : fmt::format("{:.0f} k samples/s", perSecond * 1e-3);
+}
+
+std::string describe(const RenderProgress& p, bool isLast) {
+    return fmt::format(
+        "{}/{} spp  {}  {}", p.samplesDone, p.samplesTarget, formatRate(p.cameraSamplesPerSecond),
+        isLast ? "in " + formatDuration(p.seconds) : "ETA " + formatDuration(secondsLeft(p)));
+}
+
+}  // namespace
+
+std::string formatDuration(double seconds) {
+    if (seconds < 60.0) return fmt::format("{:.1f} s", seconds);
+    const auto total = static_cast<long>(seconds + 0.5);
+    if (total < 3600) return fmt::format("{}:{:02}", total / 60, total % 60);
+    return fmt::format("{}:{:02}:{:02}", total / 3600, total / 60 % 60, total % 60);
+}
+
+Progress::Progress(ProgressStyle style) : style_(style) {
+    if (style_ == ProgressStyle::automatic)
+        style_ = isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::lines;
+}
+
+void Progress::update(const RenderProgress& progress) {
+    const double interval = style_ == ProgressStyle::lines ? 10.0 : 0.1;
+    if (progress.seconds - lastSeconds_ < interval) return;
+    lastSeconds_ = progress.seconds;
+    write(progress, false);
+}
+
+void Progress::finish(const RenderProgress& progress) { write(progress, true); }
+
+void Progress::write(const RenderProgress& p, bool isLast) {
+    switch (style_) {
+        case ProgressStyle::quiet:
+        case ProgressStyle::automatic:
+            return;
+        case ProgressStyle::json:
+            fmt::print(
+                stderr,
+                "{{\"samples\":{},\"target\":{},\"seconds\":{:.3f},\"samples_per_second\":{:.0f},"
+                "\"eta_seconds\":{:.3f},\"done\":{}}}\n",
+                p.samplesDone, p.samplesTarget, p.seconds, p.cameraSamplesPerSecond,
+                isLast ? 0.0 : secondsLeft(p), isLast);
+            return;
+        case ProgressStyle::lines:
+            fmt::print(stderr, "{}\n", describe(p, isLast));
+            return;
+        case ProgressStyle::bar: {
+            const int filled = static_cast<int>(fractionDone(p) * barWidth);
+            const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
+                                    std::string(static_cast<std::size_t>(barWidth - filled), '.');
+            // Erase to the end of the line: a shorter line follows a longer one.
+            fmt::print(stderr, "\r[{}] {}\033[K{}", bar, describe(p, isLast), isLast ? "\n" : "");
+            std::fflush(stderr);
+            return;
+        }
+    }
+}
+
+}  // namespace etendue

@@ -1,0 +1,28 @@
+// Progress of a long command: a bar on a terminal, plain lines elsewhere, JSON lines for machines.
+#pragma once
+
+#include <string>
+
+#include "renderer/render.h"
+
+namespace etendue {
+
+enum class ProgressStyle { automatic, bar, lines, json, quiet };
+
+/// Writes to standard error. At most ten updates a second (bar), or one every ten seconds (lines).
+class Progress {
+public:
+    explicit Progress(ProgressStyle style);
+    void update(const RenderProgress& progress);
+    void finish(const RenderProgress& progress);
+
+private:
+    void write(const RenderProgress& progress, bool isLast);
+    ProgressStyle style_;
+    double lastSeconds_ = -1e9;
+};
+
+/// "1:02:03", "2:03" or "4.2 s".
+std::string formatDuration(double seconds);
+
+}  // namespace etendue

@@ -1,0 +1,199 @@
+#include "tools/render_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+
+#include "renderer/parallel.h"
+#include "renderer/render.h"
+#include "renderer/scene_loader.h"
+#include "renderer/srgb.h"
+#include "tools/version.h"
+
+namespace etendue {
+
+namespace {
+
+std::atomic<int> stopRequests{0};
+static_assert(std::atomic<int>::is_always_lock_free);  // a signal handler may touch nothing else
+
+/// The first signal asks for the current pass to be finished and written; the second one ends at
+/// once.
+extern "C" void requestStop(int signal) {
+    if (++stopRequests > 1) {
+        std::signal(signal, SIG_DFL);
+        std::raise(signal);
+    }
+}
+
+FrameWindow windowFor(const RenderCommand& command, const FilmSettings& film) {
+    FrameWindow window{film.width, film.height, 0, 0, film.width, film.height};
+    if (command.crop.empty()) return window;
+    window.x = command.crop[0];
+    window.y = command.crop[1];
+    window.width = command.crop[2];
+    window.height = command.crop[3];
+    if (window.width < 1 || window.height < 1 || window.x + window.width > film.width ||
+        window.y + window.height > film.height)
+        throw InputError(
+            fmt::format("--crop {},{},{},{}: must lie in the frame of {} × {} pixels", window.x,
+                        window.y, window.width, window.height, film.width, film.height),
+            ExitCode::usage);
+    return window;
+}
+
+FilmLayers layersFor(const RenderCommand& command) {
+    const auto has = [&](const char* name) {
+        return std::find(command.layers.begin(), command.layers.end(), name) !=
+               command.layers.end();
+    };
+    FilmLayers layers;
+    layers.albedo = has("albedo");
+    layers.normal = has("normal");
+    layers.depth = has("depth");
+    layers.position = has("position");
+    layers.variance = has("variance");
+    return layers;
+}
+
+/// The viewer's axes (x right, y up, looking along −z) as OpenEXR keeps matrices: row vectors, so
+/// the translation is in the last row.
+std::vector<float> worldToCamera(const Camera& camera) {
+    const Transform& t = camera.settings().worldFromLens;
+    const Transform worldFromCamera{-t.x, t.y, -t.z, t.translation};
+    const Transform m = worldFromCamera.inverse();
+    std::vector<float> rows;
+    for (const auto& [v, w] : {std::pair{m.x, 0.0}, {m.y, 0.0}, {m.z, 0.0}, {m.translation, 1.0}})
+        for (const double value : {v.x, v.y, v.z, w}) rows.push_back(static_cast<float>(value));
+    return rows;
+}
+
+Metadata metadataFor(const RenderCommand& command, const LoadedScene& loaded,
+                     const RenderResult& result) {
+    Metadata m;
+    m["software"] = fmt::format("etendue {}", version);
+    m["etendue:version"] = std::string(version);
+    m["etendue:command"] = command.commandLine;
+    m["etendue:scene"] = command.scene.string();
+    m["etendue:sceneHash"] = loaded.hash;
+    m["etendue:estimator"] = loaded.estimator.kind;
+    m["etendue:seed"] = std::to_string(command.seed);
+    m["etendue:samples"] = static_cast<int>(result.samples);
+    m["etendue:renderSeconds"] = static_cast<float>(result.seconds);
+    m["worldToCamera"] = worldToCamera(*loaded.camera);
+    if (loaded.fNumber > 0.0) {
+        m["aperture"] = static_cast<float>(loaded.fNumber);
+        m["focus"] = static_cast<float>(loaded.focusDistance);
+    }
+    return m;
+}
+
+/// What is wrong with the picture, said aloud: nothing is left out in silence.
+void reportDefects(const RenderCommand& command, const RenderResult& result) {
+    if (result.badSampleCount > 0) {
+        fmt::print(
+            stderr,
+            "etendue: {} samples were not finite or negative and were left out; the first:\n",
+            result.badSampleCount);
+        for (const BadSample& b : result.badSamples)
+            fmt::print(stderr, "  seed {} pixel {},{} sample {}\n", command.seed, b.x, b.y,
+                       b.sample);
+    }
+    if (result.refusedRays > 0)
+        fmt::print(stderr, "etendue: {} rays had no finite place in the scene and met nothing\n",
+                   result.refusedRays);
+}
+
+void printNotes(const LoadedScene& loaded, bool isQuiet) {
+    if (isQuiet) return;
+    for (const std::string& note : loaded.notes) fmt::print(stderr, "note: {}\n", note);
+}
+
+LoadOptions loadOptions(const RenderCommand& command, int threads) {
+    LoadOptions options{command.overrides, threads};
+    if (!command.size.empty()) {
+        options.overrides.push_back(fmt::format("film.width={}", command.size[0]));
+        options.overrides.push_back(fmt::format("film.height={}", command.size[1]));
+    }
+    return options;
+}
+
+void writePictures(const RenderCommand& command, const LoadedScene& loaded, const Film& film,
+                   const RenderResult& result) {
+    const std::vector<ExrChannels> channels = film.channels();
+    writeExr(command.output, film.window(), channels, metadataFor(command, loaded, result));
+    if (!command.preview.empty())
+        writePng(
+            command.preview, film.window().width, film.window().height,
+            srgbBytes(channels.front().pixels, static_cast<float>(command.previewExposureStops)));
+}
+
+/// Better now than after hours of rendering.
+void checkWritable(const std::filesystem::path& file) {
+    if (file.empty()) return;
+    std::filesystem::path folder = file.parent_path();
+    if (folder.empty()) folder = ".";
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error))
+        throw InputError(fmt::format("{}: no such folder", folder.string()), ExitCode::missingFile);
+    if (std::filesystem::is_directory(file, error))
+        throw InputError(fmt::format("{}: is a folder, not a file to write", file.string()));
+}
+
+}  // namespace
+
+ExitCode runRender(const RenderCommand& command) {
+    const bool isQuiet = command.progress == ProgressStyle::quiet;
+    checkWritable(command.output);
+    checkWritable(command.preview);
+    const int threads = command.threads.value_or(hardwareThreads());
+    const LoadedScene loaded = loadScene(command.scene, loadOptions(command, threads));
+    printNotes(loaded, isQuiet);
+
+    Film film(windowFor(command, loaded.film), layersFor(command));
+    const Filter filter(loaded.film.filter, loaded.film.filterRadius);
+    const std::unique_ptr<Estimator> estimator = makeEstimator(loaded.estimator);
+    RenderSettings settings;
+    settings.samples = static_cast<std::uint32_t>(command.samples.value_or(loaded.samples));
+    settings.seed = command.seed;
+    settings.threads = threads;
+    if (command.timeLimitSeconds) settings.timeLimitSeconds = *command.timeLimitSeconds;
+
+    std::signal(SIGINT, requestStop);
+    std::signal(SIGTERM, requestStop);
+    Progress progress(command.progress);
+    RenderProgress last;
+    const RenderResult result = render(*loaded.scene, *loaded.camera, *estimator, filter, film,
+                                       settings, [&](const RenderProgress& p) {
+                                           last = p;
+                                           progress.update(p);
+                                           return stopRequests == 0;
+                                       });
+    progress.finish(last);
+    reportDefects(command, result);
+    writePictures(command, loaded, film, result);
+    if (result.wasInterrupted && !isQuiet)
+        fmt::print(stderr, "stopped early: {} of {} samples per pixel are in the picture\n",
+                   result.samples, settings.samples);
+    return result.wasInterrupted ? ExitCode::stoppedEarly : ExitCode::success;
+}
+
+ExitCode runCheck(const CheckCommand& command) {
+    const LoadedScene loaded = loadScene(command.scene, {command.overrides, hardwareThreads()});
+    printNotes(loaded, false);
+    const BoundingSphere bounds = loaded.scene->bounds();
+    fmt::print("{}: valid\n", command.scene.string());
+    fmt::print("  triangles  {}\n", loaded.scene->triangleCount());
+    fmt::print("  lights     {}\n", loaded.scene->lights().size());
+    fmt::print("  bounds     centre {:.4g} {:.4g} {:.4g} m, radius {:.4g} m\n", bounds.center.x,
+               bounds.center.y, bounds.center.z, bounds.radius);
+    fmt::print("  picture    {} × {}, {} samples per pixel, {} to depth {}\n", loaded.film.width,
+               loaded.film.height, loaded.samples, loaded.estimator.kind,
+               loaded.estimator.maxDepth);
+    fmt::print("  hash       {}\n", loaded.hash);
+    return ExitCode::success;
+}
+
+}  // namespace etendue

@@ -1,0 +1,40 @@
+// etendue render, etendue check.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/config.h"
+#include "tools/progress.h"
+
+namespace etendue {
+
+struct RenderCommand {
+    std::filesystem::path scene, output, preview;
+    std::optional<int> samples, threads;
+    std::uint64_t seed = 0;
+    std::optional<double> timeLimitSeconds;
+    std::vector<int> size;  // width, height, or empty
+    std::vector<int> crop;  // x, y, width, height, or empty
+    std::vector<std::string> overrides;
+    std::vector<std::string> layers;  // albedo, normal, depth, position, variance
+    double previewExposureStops = 0.0;
+    ProgressStyle progress = ProgressStyle::automatic;
+    std::string commandLine;  // for the metadata
+};
+
+/// Renders and writes the pictures. Throws InputError or std::runtime_error.
+ExitCode runRender(const RenderCommand& command);
+
+struct CheckCommand {
+    std::filesystem::path scene;
+    std::vector<std::string> overrides;
+};
+
+/// Loads everything and says what was found.
+ExitCode runCheck(const CheckCommand& command);
+
+}  // namespace etendue

@@ -1,0 +1,64 @@
+#include "lens/phase_space.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "lens/surface_intersection.h"
+
+namespace etendue {
+
+PupilSphere::PupilSphere(const OpticalSystem& system) {
+    const SurfaceShape& first = system.surfaces.front().shape;
+    if (first.curvedInX && first.curvedInY) shape_.curvature = first.curvature;
+}
+
+template <class T>
+PupilSphere::Frame<T> PupilSphere::frameAt(const Vector3<T>& point) const {
+    const Vector3<T> n = gradient(shape_, point);
+    const T share = 1.0 / (1.0 + n.z);
+    const T xy = -(n.x * n.y * share);
+    return {{1.0 - n.x * n.x * share, xy, -n.x}, {xy, 1.0 - n.y * n.y * share, -n.y}, n};
+}
+
+template <class T>
+std::optional<PupilState<T>> PupilSphere::state(const LensRay<T>& ray) const {
+    const std::optional<double> t =
+        intersect(shape_, 0.0, valueOf(ray.origin), valueOf(ray.direction), Heading::toScene);
+    if (!t) return {};
+    const Vector3<T> point = pointOnSurface(shape_, ray, *t);
+    const Frame<T> frame = frameAt(point);
+    return PupilState<T>{point.x, point.y, dot(ray.direction, frame.x),
+                         dot(ray.direction, frame.y)};
+}
+
+std::optional<LensRay<double>> PupilSphere::ray(const PupilState<double>& state) const {
+    const double squared = state.x * state.x + state.y * state.y;
+    const double along =
+        1.0 - state.directionX * state.directionX - state.directionY * state.directionY;
+    if (!(conicRadicand(shape_, squared) > 0.0 && along >= 0.0)) return {};
+    const Vector3<double> point{state.x, state.y, sag(shape_, squared)};
+    const Frame<double> frame = frameAt(point);
+    return LensRay<double>{point, frame.x * state.directionX + frame.y * state.directionY +
+                                      frame.normal * std::sqrt(along)};
+}
+
+double PupilSphere::normalZ(double x, double y) const {
+    return std::sqrt(conicRadicand(shape_, x * x + y * y));
+}
+
+template std::optional<PupilState<double>> PupilSphere::state(const LensRay<double>&) const;
+template std::optional<PupilState<Dual<2>>> PupilSphere::state(const LensRay<Dual<2>>&) const;
+template std::optional<PupilState<Dual<4>>> PupilSphere::state(const LensRay<Dual<4>>&) const;
+
+double etendueDeterminant(const Eigen::Matrix4d& pupilBySensor, const SensorState& sensor,
+                          const PupilState<double>& pupil, const PupilSphere& sphere) {
+    // At the sensor the projected direction is the direction's x and y, whose determinant by the
+    // slope is cos⁴θ. At the sphere the tangential components are; its area is 1/normalZ of its
+    // projection's.
+    const double squared = sensor.slopeX * sensor.slopeX + sensor.slopeY * sensor.slopeY;
+    const double cosSquared = 1.0 / (1.0 + squared);
+    return std::abs(pupilBySensor.determinant()) /
+           (sphere.normalZ(pupil.x, pupil.y) * cosSquared * cosSquared);
+}
+
+}  // namespace etendue

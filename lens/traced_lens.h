@@ -1,0 +1,106 @@
+// TracedLens: a lens model that traces its prescription exactly. The ground truth of every fit, and
+// a camera in its own right.
+//
+// Lens space: the origin at the vertex of the first surface (optical_system.h).
+#pragma once
+
+#include <limits>
+
+#include "lens/lens_model.h"
+#include "lens/paraxial.h"
+#include "lens/phase_space.h"
+#include "lens/sequential_trace.h"
+
+namespace etendue {
+
+/// What a photographer sets.
+struct LensSettings {
+    /// As stopRadiusForFNumber; empty: wide open, the stop's whole semi-aperture.
+    std::optional<double> fNumber = {};
+    Blades blades = {};
+    /// From the sensor to the plane that is sharp at the d line in the paraxial limit.
+    double focusDistanceMm = std::numeric_limits<double>::infinity();
+};
+
+/// What became of one ray.
+struct TracedRay {
+    Passage passage;
+    LensRay<double> ray;       // after the last surface it met
+    ApertureState aperture{};  // where it crossed the stop, if it came so far, as it left it
+};
+
+/// A TracedLens at one wavelength in 350–1100 nm. It refers to the lens, which must outlive it, and
+/// saves looking up the indices for each of many rays.
+class MonochromaticLens;
+
+class TracedLens final : public LensModel {
+public:
+    /// Throws InputError for a prescription with a fault, std::invalid_argument when the aperture
+    /// is wider than the stop or the sensor not behind the last vertex.
+    TracedLens(const Prescription& prescription, const Aperture& aperture, double sensorDistanceMm);
+
+    /// Empty for a wavelength beyond 350–1100 nm, an aperture point outside the aperture, a ray
+    /// that does not pass, and a folded one: where det ∂a/∂q or det ∂(exit direction)/∂s has turned
+    /// negative. There one aperture point sees one direction in two sensor points, of which
+    /// connect() could not give both; without folds there is one.
+    std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture,
+                                 double wavelengthNm) const override;
+    std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                                       double wavelengthNm) const override;
+    AperturePoint sampleAperture(Eigen::Vector2d u) const override;
+    double apertureAreaMm2() const override { return system_.aperture.areaMm2(); }
+
+    /// Empty beyond 350–1100 nm.
+    std::optional<MonochromaticLens> at(double wavelengthNm) const;
+
+    const OpticalSystem& system() const { return system_; }
+    double sensorZMm() const { return sensorZMm_; }
+    /// At the d line.
+    const StopMap& paraxialStopMap() const { return stopMap_; }
+    double focalLengthMm() const { return focalLengthMm_; }
+
+private:
+    OpticalSystem system_;
+    double sensorZMm_;
+    StopMap stopMap_;
+    double focalLengthMm_;  // the mean of x and y
+};
+
+class MonochromaticLens {
+public:
+    MonochromaticLens(const TracedLens& lens, double wavelengthNm);
+
+    /// From the sensor into the scene and from anywhere in front of the lens to the sensor, whose
+    /// plane `ray` then ends on. Rims, stop and total reflection end a ray.
+    TracedRay traceToScene(const SensorState& sensor) const;
+    TracedRay traceToSensor(const LensRay<double>& ray) const;
+
+    /// As LensModel's.
+    std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture) const;
+    std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm,
+                                       AperturePoint aperture) const;
+
+    /// The ray through the centre of the stop, rims ignored.
+    std::optional<ExitRay> chiefRay(SensorPoint sensor) const;
+
+    /// The slope at which a ray must leave the sensor to cross the stop at `aperture`, rims
+    /// ignored.
+    std::optional<Eigen::Vector2d> slopeThrough(SensorPoint sensor, AperturePoint aperture) const;
+
+    MonochromaticSystem system() const { return {lens_->system(), indices_, wavelengthNm_}; }
+
+private:
+    template <TraceMode mode>
+    std::optional<ExitRay> exitRay(SensorPoint sensor, AperturePoint aperture) const;
+
+    const TracedLens* lens_;
+    std::vector<double> indices_;
+    double wavelengthNm_;
+};
+
+/// Throws as the constructor does, and std::invalid_argument for an f-number or focus distance that
+/// the lens cannot be set to.
+std::unique_ptr<TracedLens> makeTracedLens(const Prescription& prescription,
+                                           const LensSettings& settings = {});
+
+}  // namespace etendue

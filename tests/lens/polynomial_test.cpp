@@ -1,0 +1,195 @@
+#include "lens/polynomial.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+namespace etendue {
+
+namespace {
+
+/// Any polynomial of a basis: every `stride`-th candidate, coefficients at random.
+SparsePolynomial somePolynomial(PolynomialBasis basis, OutputCount outputs, std::size_t stride) {
+    std::mt19937_64 engine(7);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    SparsePolynomial polynomial{basis, outputs, {0.1, 0.25, {0.3, 0.3}, 0.4, 4.0}, {}};
+    for (const TermGroup& candidates : candidateTerms(basis, 7, outputs)) {
+        TermGroup group{candidates.outputs, {}, {}};
+        for (std::size_t t = 0; t < candidates.terms.size(); t += stride)
+            group.terms.push_back(candidates.terms[t]);
+        group.coefficients = Eigen::MatrixXd::NullaryExpr(
+            static_cast<Eigen::Index>(group.outputs.size()),
+            static_cast<Eigen::Index>(group.terms.size()), [&] { return uniform(engine); });
+        polynomial.groups.push_back(std::move(group));
+    }
+    return polynomial;
+}
+
+std::vector<PolynomialInput> someInputs(std::size_t count) {
+    std::mt19937_64 engine(11);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    std::vector<PolynomialInput> inputs;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = uniform(engine), y = uniform(engine), px = uniform(engine),
+                     py = uniform(engine), w = uniform(engine);
+        inputs.push_back({{7.0 * x, 7.0 * y}, {2.0 * px, 2.0 * py}, 550.0 + 150.0 * w});
+    }
+    return inputs;
+}
+
+constexpr PolynomialBasis allBases[] = {PolynomialBasis::axial, PolynomialBasis::twoPlane,
+                                        PolynomialBasis::cartesian, PolynomialBasis::none};
+
+/// A bound on the sum of a polynomial's terms, which rounding errors are relative to.
+double sizeOf(const SparsePolynomial& polynomial, const PolynomialInput& input) {
+    SparsePolynomial positive = polynomial;
+    for (TermGroup& group : positive.groups) group.coefficients = group.coefficients.cwiseAbs();
+    PolynomialInput outward = input;
+    outward.s = input.s.cwiseAbs();
+    outward.p = input.p.cwiseAbs();
+    outward.wavelengthNm = 400.0;  // where |w| is largest
+    return evaluateNaively(positive, outward).cwiseAbs().maxCoeff();
+}
+
+Eigen::Matrix2d rotation(double angle) {
+    Eigen::Matrix2d matrix;
+    matrix << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+    return matrix;
+}
+
+}  // namespace
+
+TEST_CASE("Candidates: as many as the combinatorics of degree and parity say") {
+    // N(11) of five variables; of an axial basis of degree 3, by hand: 1, w, w², ρ, σ, κ.
+    CHECK(candidateTerms(PolynomialBasis::none, 11, {2, 1}).front().terms.size() == 4368);
+    CHECK(candidateTerms(PolynomialBasis::none, 4, {2, 1}).front().terms.size() == 126);
+    CHECK(candidateTerms(PolynomialBasis::axial, 3, {2, 1}).front().terms.size() == 6);
+    // What a Taylor expansion of degree 2, 3 and 4 holds for one component.
+    const std::size_t taylor[] = {4, 16, 28};
+    for (int degree = 2; degree <= 4; ++degree)
+        CHECK(candidateTerms(PolynomialBasis::cartesian, degree, {1, 0}).front().terms.size() ==
+              taylor[degree - 2]);
+    CHECK(candidateTerms(PolynomialBasis::twoPlane, 5, {2, 1}).size() == 3);
+    CHECK(candidateTerms(PolynomialBasis::cartesian, 5, {2, 1}).size() == 5);
+}
+
+TEST_CASE("PolynomialEvaluator: the values are those of the terms added up one by one") {
+    for (const PolynomialBasis basis : allBases) {
+        const SparsePolynomial polynomial = somePolynomial(basis, {2, 1}, 5);
+        const PolynomialEvaluator<double> inDouble(polynomial);
+        const PolynomialEvaluator<float> inFloat(polynomial);
+        for (const PolynomialInput& input : someInputs(50)) {
+            const Eigen::VectorXd expected = evaluateNaively(polynomial, input);
+            const PolynomialResult<double> result = inDouble.evaluate(input);
+            const PolynomialResult<float> rounded = inFloat.evaluate(input);
+            // A term of degree 7 rounds 20 times at the most, and sums of 200 terms as often.
+            const double size = 220.0 * sizeOf(polynomial, input);
+            for (int o = 0; o < 5; ++o) {
+                const std::size_t i = static_cast<std::size_t>(o);
+                CHECK(std::abs(result.values[i] - expected[o]) <= 0x1p-52 * size);
+                CHECK(std::abs(static_cast<double>(rounded.values[i]) - expected[o]) <=
+                      0x1p-23 * size);
+            }
+        }
+    }
+}
+
+TEST_CASE("PolynomialEvaluator: the Jacobian agrees with central differences") {
+    for (const PolynomialBasis basis : allBases) {
+        const SparsePolynomial polynomial = somePolynomial(basis, {2, 1}, 5);
+        const PolynomialEvaluator<double> evaluator(polynomial);
+        for (const PolynomialInput& input : someInputs(20)) {
+            const PolynomialResult<double> result = evaluator.evaluate(input);
+            const double size = sizeOf(polynomial, input);
+            for (int j = 0; j < 4; ++j) {
+                const double h = j < 2 ? 1e-2 : 4e-3;  // a thousandth of the scaled unit
+                const auto at = [&](double steps) {
+                    PolynomialInput moved = input;
+                    (j < 2 ? moved.s[j] : moved.p[j - 2]) += steps * h;
+                    return evaluateNaively(polynomial, moved);
+                };
+                // The five-point rule: an error of h⁴/30 of a fifth derivative, (1e-3)⁴ 7!/2!/30
+                // of the size in scaled units, below 1e-9; rounding 1e-16/1e-3.
+                const Eigen::VectorXd difference =
+                    (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
+                for (int o = 0; o < 5; ++o)
+                    CHECK(std::abs(result.jacobian[static_cast<std::size_t>(o)]
+                                                  [static_cast<std::size_t>(j)] -
+                                   difference[o]) <= 1e-9 * size / (1e3 * h) * 10.0);
+            }
+        }
+    }
+}
+
+TEST_CASE_TEMPLATE("PolynomialEvaluator: a batch gives what single evaluations give", Lanes,
+                   std::integral_constant<int, 8>, std::integral_constant<int, 16>) {
+    constexpr int lanes = Lanes::value;
+    for (const double coupling : {0.0, 0.3}) {
+        SparsePolynomial polynomial = somePolynomial(PolynomialBasis::axial, {2, 1}, 1);
+        polynomial.scaling.coupling = {coupling, coupling};
+        const PolynomialEvaluator<float> evaluator(polynomial);
+        const PolynomialEvaluator<double> exact(polynomial);
+        const std::vector<PolynomialInput> inputs = someInputs(lanes);
+        BatchInput<float, lanes> batch;
+        for (int i = 0; i < lanes; ++i) {
+            const PolynomialInput& input = inputs[static_cast<std::size_t>(i)];
+            batch.sx[i] = static_cast<float>(input.s.x());
+            batch.sy[i] = static_cast<float>(input.s.y());
+            batch.px[i] = static_cast<float>(input.p.x());
+            batch.py[i] = static_cast<float>(input.p.y());
+            batch.wavelengthNm[i] = static_cast<float>(input.wavelengthNm);
+        }
+        const BatchResult<float, lanes> result = evaluator.evaluate<lanes>(batch);
+        for (int i = 0; i < lanes; ++i) {
+            const PolynomialInput& input = inputs[static_cast<std::size_t>(i)];
+            const PolynomialResult<double> single = exact.evaluate(input);
+            // As above, and seven times that for a derivative of degree 7; inputs are rounded too.
+            const double bound = 0x1p-23 * 220.0 * 7.0 * sizeOf(polynomial, input);
+            for (std::size_t o = 0; o < 5; ++o) {
+                CHECK(std::abs(static_cast<double>(result.values[o][i]) - single.values[o]) <=
+                      bound);
+                for (std::size_t j = 0; j < 2; ++j)
+                    CHECK(std::abs(static_cast<double>(result.bySensor[o][j][i]) -
+                                   single.jacobian[o][j]) <= bound);
+            }
+        }
+    }
+}
+
+TEST_CASE("PolynomialEvaluator: in the axial basis vectors turn with the inputs, scalars stay") {
+    const SparsePolynomial polynomial = somePolynomial(PolynomialBasis::axial, {2, 1}, 2);
+    const PolynomialEvaluator<double> evaluator(polynomial);
+    Eigen::Matrix2d mirror = Eigen::Matrix2d::Identity();
+    mirror(0, 0) = -1.0;
+    for (const PolynomialInput& input : someInputs(20))
+        for (const Eigen::Matrix2d& turn : {rotation(0.7), rotation(2.9), mirror}) {
+            const PolynomialResult<double> before = evaluator.evaluate(input);
+            const PolynomialResult<double> after =
+                evaluator.evaluate({turn * input.s, turn * input.p, input.wavelengthNm});
+            const double bound = 0x1p-52 * 220.0 * sizeOf(polynomial, input);
+            for (std::size_t v = 0; v < 2; ++v) {
+                const Eigen::Vector2d expected =
+                    turn * Eigen::Vector2d(before.values[2 * v], before.values[2 * v + 1]);
+                CHECK(std::abs(after.values[2 * v] - expected.x()) <= bound);
+                CHECK(std::abs(after.values[2 * v + 1] - expected.y()) <= bound);
+            }
+            CHECK(std::abs(after.values[4] - before.values[4]) <= bound);
+        }
+}
+
+TEST_CASE("PolynomialEvaluator: mirror planes hold to the last bit in the two-plane basis") {
+    const SparsePolynomial polynomial = somePolynomial(PolynomialBasis::twoPlane, {1, 1}, 3);
+    const PolynomialEvaluator<double> evaluator(polynomial);
+    for (const PolynomialInput& input : someInputs(20)) {
+        const Eigen::Vector2d mirror(-1.0, 1.0);
+        const PolynomialResult<double> before = evaluator.evaluate(input);
+        const PolynomialResult<double> after = evaluator.evaluate(
+            {input.s.cwiseProduct(mirror), input.p.cwiseProduct(mirror), input.wavelengthNm});
+        CHECK(after.values[0] == -before.values[0]);
+        CHECK(after.values[1] == before.values[1]);
+        CHECK(after.values[2] == before.values[2]);
+    }
+}
+
+}  // namespace etendue

@@ -59,14 +59,14 @@ TEST_CASE("relativeIllumination: it is 1 on the axis and falls toward the edge")
 }
 
 TEST_CASE("imageHeightMm: the picture ends where the illumination falls below the share") {
-    for (const auto& file : {"tessar-100mm.toml", "fisheye-181-10mm.toml", "petzval-50mm.toml"}) {
+    for (const auto& file : {"tessar-100mm.toml", "fisheye-181-10mm.toml"}) {
         CAPTURE(file);
         const Prescription prescription = loadPrescription(lensFile(file));
         const auto lens = makeTracedLens(prescription, {prescription.stated.fNumber});
         const double height = imageHeightMm(*lens, {0.0, 1.0}, 0.2);
         CHECK(relativeIllumination(*lens, {{0.0, height * 0.999}}) >= 0.2);
         CHECK(relativeIllumination(*lens, {{0.0, height * 1.001}}) < 0.2);
-        CHECK(imageCircleRadiusMm(*lens, 0.05) >= imageCircleRadiusMm(*lens, 0.2));
+        CHECK(imageHeightMm(*lens, {1.0, 0.0}, 0.05) >= height);
     }
 }
 

@@ -1,0 +1,70 @@
+#include "lens/field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace etendue {
+
+namespace {
+
+/// Mean throughput over the aperture.
+double meanThroughput(const TracedLens& lens, const MonochromaticLens& atLine, SensorPoint sensor,
+                      int grid) {
+    double sum = 0.0;
+    for (int i = 0; i < grid; ++i)
+        for (int j = 0; j < grid; ++j) {
+            const AperturePoint aperture =
+                lens.sampleAperture({(i + 0.5) / grid, (j + 0.5) / grid});
+            if (const auto ray = atLine.trace(sensor, aperture)) sum += ray->throughput;
+        }
+    return sum / (grid * grid);
+}
+
+double fullAngleDegrees(const MonochromaticLens& lens, const Eigen::Vector2d& edge) {
+    const std::optional<ExitRay> ray = lens.chiefRay({edge});
+    if (!ray) return std::numeric_limits<double>::quiet_NaN();
+    const Eigen::Vector3d& d = ray->direction;
+    return 2.0 * std::atan2(std::hypot(d.x(), d.y()), d.z()) * (180.0 / std::numbers::pi);
+}
+
+}  // namespace
+
+double relativeIllumination(const TracedLens& lens, SensorPoint sensor, double wavelengthNm,
+                            int grid) {
+    const MonochromaticLens atLine(lens, wavelengthNm);
+    return meanThroughput(lens, atLine, sensor, grid) /
+           meanThroughput(lens, atLine, {{0.0, 0.0}}, grid);
+}
+
+double imageHeightMm(const TracedLens& lens, const Eigen::Vector2d& along, double share) {
+    constexpr int grid = 12, halvings = 20;
+    const MonochromaticLens atLine(lens, dLineNm);
+    const double least = share * meanThroughput(lens, atLine, {{0.0, 0.0}}, grid);
+    const auto isBright = [&](double height) {
+        return meanThroughput(lens, atLine, {height * along}, grid) >= least;
+    };
+    const double step = lens.focalLengthMm() / 32.0;
+    double low = 0.0;
+    while (isBright(low + step)) low += step;  // ends: J falls as the height's fourth power
+    double high = low + step;
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = 0.5 * (low + high);
+        (isBright(middle) ? low : high) = middle;
+    }
+    return low;
+}
+
+double imageCircleRadiusMm(const TracedLens& lens, double share) {
+    return std::min(imageHeightMm(lens, Eigen::Vector2d::UnitX(), share),
+                    imageHeightMm(lens, Eigen::Vector2d::UnitY(), share));
+}
+
+FieldOfView fieldOfView(const TracedLens& lens, double sensorWidthMm, double sensorHeightMm) {
+    const MonochromaticLens atLine(lens, dLineNm);
+    const double x = 0.5 * sensorWidthMm, y = 0.5 * sensorHeightMm;
+    return {fullAngleDegrees(atLine, {x, 0.0}), fullAngleDegrees(atLine, {0.0, y}),
+            fullAngleDegrees(atLine, {x, y})};
+}
+
+}  // namespace etendue

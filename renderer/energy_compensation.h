@@ -25,7 +25,7 @@ double dielectricLoss(double mu, double alpha, double eta);
 /// What a GGX dielectric does not reflect by single scattering: all that a coat of it lets through.
 double coatTransmittance(double mu, double alpha, double eta);
 
-/// The tables of the first two.
+/// Their tables.
 EnergyTable reflectorLossTable(double alpha);
 EnergyTable dielectricLossTable(double alpha, double eta);
 EnergyTable coatTransmittanceTable(double alpha, double eta);
@@ -35,9 +35,9 @@ EnergyTable coatTransmittanceTable(double alpha, double eta);
 Spectrum multipleScatteringColor(const Spectrum& averageReflectance, float averageLoss);
 
 /// How a dielectric divides between its two sides what its compensation gives back. With a = 1 −
-/// Eavg seen from each side, any shares with n² a share equal on both sides make the lobe
-/// reciprocal; these are the mean Fresnel transmittances, which are in that proportion, times the
-/// smaller a over the other side's.
+/// Eavg seen from each side, any shares for which n² a share is equal on both sides make the lobe
+/// reciprocal. These are the mean Fresnel transmittances, for which n² transmittance is equal, each
+/// times the far side's a over the larger of the two.
 struct TransmittedShares {
     float outside, inside;  // of the light that came from there
 };

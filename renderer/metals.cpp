@@ -132,6 +132,7 @@ double extinction(double reflectance, double eta) {
 
 std::vector<std::string> metalNames() {
     std::vector<std::string> names;
+    names.reserve(metals.size());
     for (const Metal& metal : metals) names.emplace_back(metal.name);
     return names;
 }

@@ -118,7 +118,10 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
         film.addSamples(count);
         result.samples += count;
         result.seconds = secondsSince(start);
+        const double fraction = std::max(static_cast<double>(result.samples) / settings.samples,
+                                         result.seconds / settings.timeLimitSeconds);
         const RenderProgress progress{result.samples, settings.samples, result.seconds,
+                                      std::min(fraction, 1.0),
                                       pixels * result.samples / std::max(result.seconds, 1e-9)};
         if (onPass && !onPass(progress)) result.wasInterrupted = result.samples < settings.samples;
     }

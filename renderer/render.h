@@ -14,6 +14,9 @@
 
 namespace etendue {
 
+/// A count that no render reaches: the time limit ends it.
+inline constexpr std::uint32_t unlimitedSamples = 1u << 30;
+
 struct RenderSettings {
     std::uint32_t samples = 64;  // per pixel
     std::uint64_t seed = 0;
@@ -24,6 +27,7 @@ struct RenderSettings {
 struct RenderProgress {
     std::uint32_t samplesDone = 0, samplesTarget = 0;  // per pixel
     double seconds = 0.0;
+    double fractionDone = 0.0;            // of the samples or of the time, whichever ends first
     double cameraSamplesPerSecond = 0.0;  // of the whole image
 };
 

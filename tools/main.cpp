@@ -32,44 +32,57 @@ std::string joinArguments(int argc, char** argv) {
     return line;
 }
 
+void addOverrides(CLI::App* command, std::vector<std::string>& overrides) {
+    command->add_option("-s,--set", overrides, "Override any key of the scene; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+}
+
 void addRender(CLI::App& app, RenderCommand& c) {
     CLI::App* render =
         app.add_subcommand("render", "Render a scene (.toml) or a model (.obj) to EXR");
-    render->add_option("scene", c.scene, "Scene file or bare model")->required();
-    render->add_option("-o,--output", c.output, "The picture: linear float EXR")->required();
-    render->add_option("--preview", c.preview, "Also write an sRGB PNG");
-    render->add_option("--exposure", c.previewExposureStops,
-                       "Stops added to the PNG, not to the EXR");
+    render->add_option("scene", c.scene, "Scene file or bare model")->required()->type_name("FILE");
+    render->add_option("-o,--output", c.output, "The picture: linear float EXR")
+        ->required()
+        ->type_name("FILE");
+    render->add_option("--preview", c.preview, "Also write an sRGB PNG")->type_name("FILE");
+    render->add_option("--exposure", c.previewExposureStops, "Added to the PNG, not to the EXR")
+        ->type_name("STOPS");
+    render->add_option("--samples", c.samples, "Per pixel; default: the scene's estimator.samples")
+        ->check(CLI::Range(1, 1 << 30).description(""))
+        ->type_name("N");
     render
-        ->add_option("--samples", c.samples,
-                     "Samples per pixel (the scene's own: estimator.samples)")
-        ->check(CLI::Range(1, 1 << 30));
-    render->add_option("--time", c.timeLimitSeconds, "Stop after about so many seconds")
-        ->check(CLI::PositiveNumber);
-    render->add_option("--seed", c.seed, "Seed of the random numbers (0)");
-    render->add_option("--threads", c.threads, "Threads (all processors)")
-        ->check(CLI::Range(1, 1024));
-    render->add_option("--size", c.size, "WIDTH,HEIGHT of the full frame, in pixels")
+        ->add_option("--time", c.timeLimitSeconds,
+                     "Stop after about so long; without --samples, whatever the scene says")
+        ->check(CLI::PositiveNumber)
+        ->type_name("SECONDS");
+    render->add_option("--seed", c.seed, "Of the random numbers; default 0")->type_name("N");
+    render->add_option("--threads", c.threads, "Default: one for each processor")
+        ->check(CLI::Range(1, 1024).description(""))
+        ->type_name("N");
+    render->add_option("--size", c.size, "Pixels of the full frame: WIDTH,HEIGHT")
         ->delimiter(',')
         ->expected(2)
-        ->check(CLI::Range(1, 32768));
-    render->add_option("--crop", c.crop, "X,Y,WIDTH,HEIGHT: only this window of the full frame")
+        ->check(CLI::Range(1, 32768).description(""))
+        ->type_name("W,H");
+    render->add_option("--crop", c.crop, "Only this window of the full frame")
         ->delimiter(',')
         ->expected(4)
-        ->check(CLI::Range(0, 32768));
+        ->check(CLI::Range(0, 32768).description(""))
+        ->type_name("X,Y,W,H");
     render->add_option("--layers", c.layers, "More layers: albedo,normal,depth,position,variance")
         ->delimiter(',')
-        ->check(CLI::IsMember({"albedo", "normal", "depth", "position", "variance"}));
-    render
-        ->add_option("-s,--set", c.overrides,
-                     "KEY=VALUE overrides any key of the scene (repeatable)")
-        ->allow_extra_args(false);
+        ->check(
+            CLI::IsMember({"albedo", "normal", "depth", "position", "variance"}).description(""))
+        ->type_name("LIST");
+    addOverrides(render, c.overrides);
     const std::map<std::string, ProgressStyle> styles{{"auto", ProgressStyle::automatic},
                                                       {"bar", ProgressStyle::bar},
                                                       {"lines", ProgressStyle::lines},
                                                       {"json", ProgressStyle::json}};
-    render->add_option("--progress", c.progress, "auto, bar, lines or json")
-        ->transform(CLI::CheckedTransformer(styles));
+    render->add_option("--progress", c.progress, "auto, bar, lines or json (one object a line)")
+        ->transform(CLI::CheckedTransformer(styles).description(""))
+        ->type_name("STYLE");
     render->add_flag_callback(
         "--quiet", [&c] { c.progress = ProgressStyle::quiet; }, "Print nothing but errors");
 }
@@ -77,7 +90,7 @@ void addRender(CLI::App& app, RenderCommand& c) {
 void addCheck(CLI::App& app, CheckCommand& c) {
     CLI::App* check =
         app.add_subcommand("check", "Load a scene, report what is in it, render nothing");
-    check->add_option("scene", c.scene, "Scene file or bare model")->required();
+    check->add_option("scene", c.scene, "Scene file or bare model")->required()->type_name("FILE");
     check
         ->add_option("-s,--set", c.overrides,
                      "KEY=VALUE overrides any key of the scene (repeatable)")

@@ -11,13 +11,15 @@ namespace {
 
 constexpr int barWidth = 28;
 
-double fractionDone(const RenderProgress& p) {
-    return p.samplesTarget == 0 ? 1.0 : static_cast<double>(p.samplesDone) / p.samplesTarget;
+double secondsLeft(const RenderProgress& p) {
+    return p.fractionDone > 0.0 ? p.seconds * (1.0 - p.fractionDone) / p.fractionDone : 0.0;
 }
 
-double secondsLeft(const RenderProgress& p) {
-    const double fraction = fractionDone(p);
-    return fraction > 0.0 ? p.seconds * (1.0 - fraction) / fraction : 0.0;
+/// "32/64 spp", or "32 spp" where time alone ends the render.
+std::string formatSamples(const RenderProgress& p) {
+    return p.samplesTarget == unlimitedSamples
+               ? fmt::format("{} spp", p.samplesDone)
+               : fmt::format("{}/{} spp", p.samplesDone, p.samplesTarget);
 }
 
 std::string formatRate(double perSecond) {
@@ -27,7 +29,7 @@ std::string formatRate(double perSecond) {
 
 std::string describe(const RenderProgress& p, bool isLast) {
     return fmt::format(
-        "{}/{} spp  {}  {}", p.samplesDone, p.samplesTarget, formatRate(p.cameraSamplesPerSecond),
+        "{}  {}  {}", formatSamples(p), formatRate(p.cameraSamplesPerSecond),
         isLast ? "in " + formatDuration(p.seconds) : "ETA " + formatDuration(secondsLeft(p)));
 }
 
@@ -71,7 +73,7 @@ void Progress::write(const RenderProgress& p, bool isLast) {
             fmt::print(stderr, "{}\n", describe(p, isLast));
             return;
         case ProgressStyle::bar: {
-            const int filled = static_cast<int>(fractionDone(p) * barWidth);
+            const int filled = static_cast<int>(p.fractionDone * barWidth);
             const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                                     std::string(static_cast<std::size_t>(barWidth - filled), '.');
             // Erase to the end of the line: a shorter line follows a longer one.

@@ -156,7 +156,9 @@ ExitCode runRender(const RenderCommand& command) {
     const Filter filter(loaded.film.filter, loaded.film.filterRadius);
     const std::unique_ptr<Estimator> estimator = makeEstimator(loaded.estimator);
     RenderSettings settings;
-    settings.samples = static_cast<std::uint32_t>(command.samples.value_or(loaded.samples));
+    const int fallback =
+        command.timeLimitSeconds ? static_cast<int>(unlimitedSamples) : loaded.samples;
+    settings.samples = static_cast<std::uint32_t>(command.samples.value_or(fallback));
     settings.seed = command.seed;
     settings.threads = threads;
     if (command.timeLimitSeconds) settings.timeLimitSeconds = *command.timeLimitSeconds;

@@ -71,17 +71,20 @@ Mesh shapeFrom(const ConfigTable& table) {
     table.fail("shape", "no such shape");
 }
 
-/// Slots by the file's material names; the scene file's own material of that name wins over the
-/// MTL's.
+/// What each material slot stands for: the scene file's material of that name, else what the MTL
+/// says
+/// (`fileMaterials`, one for each slot or none), else grey.
 std::vector<const Material*> dress(const Mesh& mesh, const std::vector<ObjMaterial>& fileMaterials,
                                    LoadingScene& loading) {
     std::vector<const Material*> slots;
-    for (const std::string& name : mesh.materialNames) {
-        const auto own = loading.materials.find(name);
-        const Material* slot = own == loading.materials.end() ? nullptr : own->second;
-        for (const ObjMaterial& m : fileMaterials)
-            if (!slot && m.name == name) slot = addObjMaterial(m, loading);
-        slots.push_back(slot ? slot : defaultMaterial(loading));
+    for (std::size_t i = 0; i < mesh.materialNames.size(); ++i) {
+        const auto own = loading.materials.find(mesh.materialNames[i]);
+        if (own != loading.materials.end())
+            slots.push_back(own->second);
+        else if (i < fileMaterials.size())
+            slots.push_back(addObjMaterial(fileMaterials[i], loading));
+        else
+            slots.push_back(defaultMaterial(loading));
     }
     return slots;
 }

@@ -16,14 +16,12 @@
 #include <type_traits>
 
 #include "config/config.h"
-#include "renderer/png_check.h"
+#include "renderer/image_check.h"
 
 namespace etendue {
 namespace {
 
 using Bytes = std::vector<unsigned char>;
-
-constexpr int largestSide = 32768;
 
 /// Once per process, before the first use. The renderer's own threads are all there should be.
 void setUpOpenImageIo() {
@@ -87,9 +85,8 @@ void checkSize(const OIIO::ImageSpec& spec, std::size_t fileSize,
     const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height);
     if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
         throw unreadable(file, "has no pixels (" + size + ")");
-    if (spec.width > largestSide || spec.height > largestSide)
-        throw unreadable(file, "is " + size + " pixels, expected at most " +
-                                   std::to_string(largestSide) + " on a side");
+    if (std::max(spec.width, spec.height) > largestImageSide)
+        throw unreadable(file, sizeFault(spec.width, spec.height));
     if (spec.deep || spec.depth > 1)
         throw unreadable(file, "is a deep or volume image, expected a flat one");
     // The densest coding (constant blocks of an EXR, deflated) packs some 70,000 bytes into one.
@@ -148,9 +145,10 @@ void requireFinite(const std::vector<float>& pixels, const Image& image,
 }
 
 Image decode(const Bytes& bytes, const std::string& format, const std::filesystem::path& file) {
-    if (format == "png")
-        if (const std::string fault = pngFault(bytes); !fault.empty())
-            throw unreadable(file, fault);
+    const std::string fault = format == "png"       ? pngFault(bytes)
+                              : format == "openexr" ? exrFault(bytes)
+                                                    : std::string();
+    if (!fault.empty()) throw unreadable(file, fault);
     const auto input = OIIO::ImageInput::create(format);
     if (!input) throw unreadable(file, OIIO::geterror());
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());

@@ -30,7 +30,7 @@ struct Image {
 /// orientation tags and colour profiles are not applied.
 ///
 /// Throws InputError (missingFile or badInput) that names the file and the reader's reason:
-/// unreadable, truncated, of another format, larger than 32768 on a side, neither grey nor RGB,
+/// unreadable, truncated, of another format, larger than largestImageSide, neither grey nor RGB,
 /// integers of more than 16 bits, NaN or infinite pixels.
 Image readImage(const std::filesystem::path& file);
 

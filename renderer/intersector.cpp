@@ -172,6 +172,9 @@ struct Intersector::Embree {
 Intersector::Intersector(std::span<const Mesh> meshes, std::span<const Instance> instances,
                          int threads)
     : embree_(std::make_unique<Embree>()) {
+#if defined(ETENDUE_STD_THREADS)
+    threads = 1;  // the thread sanitizer does not see how Embree's own threads synchronise
+#endif
     // The instruction set is pinned so that two machines find the same hits, bit for bit.
     std::string settings = "threads=" + std::to_string(threads);
 #if defined(__x86_64__)

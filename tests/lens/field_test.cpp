@@ -33,11 +33,12 @@ double irradianceBySlopes(const TracedLens& lens, double height) {
 }
 
 TEST_CASE("relativeIllumination: it is what rays in all directions from the sensor add up to") {
-    for (const auto& [file, height] :
-         {std::pair("tessar-100mm.toml", 30.0), std::pair("double-gauss-50mm-f1.1.toml", 14.0),
-          std::pair("fisheye-220-6mm-f2.8.toml", 8.0), std::pair("fisheye-10mm.toml", 12.0)}) {
-        CAPTURE(file);
-        const Prescription prescription = loadPrescription(lensFile(file));
+    for (const ShippedLens& shipped :
+         {ShippedLens{"tessar-100mm.toml", 30.0}, ShippedLens{"double-gauss-50mm-f1.1.toml", 14.0},
+          ShippedLens{"fisheye-220-6mm-f2.8.toml", 8.0}, ShippedLens{"fisheye-10mm.toml", 12.0}}) {
+        CAPTURE(shipped.file);
+        const Prescription prescription = load(shipped);
+        const double height = shipped.imageHeightMm;
         const auto lens = makeTracedLens(prescription, {prescription.stated.fNumber});
         const double expected = irradianceBySlopes(*lens, height) / irradianceBySlopes(*lens, 0.0);
         // A grid counts the cells along a rim all or not at all. Of a beam m cells wide that is

@@ -125,9 +125,9 @@ TEST_CASE("Fit file: what is no fit is refused, not trusted") {
     const std::filesystem::path file = directory.path() / "fit.json";
     CHECK(readFitFile(file).refusal.find("no such file") != std::string::npos);
     for (const std::string& text :
-         {std::string("{}"), std::string("[1, 2]"), std::string("\"fit\""), std::string("\0\xff", 2),
-          std::string("{\"format\": 3}"), std::string("{\"format\": \"etendue lens fit 1\"}"),
-          std::string(100'000, '[')}) {
+         {std::string("{}"), std::string("[1, 2]"), std::string("\"fit\""),
+          std::string("\0\xff", 2), std::string("{\"format\": 3}"),
+          std::string("{\"format\": \"etendue lens fit 1\"}"), std::string(100'000, '[')}) {
         write(file, text);
         const FitFileContent content = readFitFile(file);
         CHECK_FALSE(content.fit.has_value());

@@ -12,7 +12,8 @@ namespace etendue {
 TEST_CASE("Fit rays: each is what the exact trace says, and they are the same every time") {
     const FitDomain domain = doubleGaussDomain();
     const TracedLens lens = lensOf(doubleGauss(), domain);
-    const FitRays rays = drawFitRays(lens, domain, 200, 5), again = drawFitRays(lens, domain, 200, 5);
+    const FitRays rays = drawFitRays(lens, domain, 200, 5),
+                  again = drawFitRays(lens, domain, 200, 5);
     REQUIRE(rays.rays.size() == 200);
     CHECK(rays.counts.passed == 200);
     CHECK(rays.counts.passed + rays.counts.blocked + rays.counts.folded == rays.counts.drawn);
@@ -76,20 +77,21 @@ TEST_CASE("Lens fit: a small fit is near, a larger one nearer, in both forms") {
     }
 }
 
-TEST_CASE("Lens fit: every basis can fit every lens, the axial one best per term") {
+TEST_CASE("Lens fit: every basis can fit every lens, the axial one with fewest terms") {
     FitSettings settings = smallSettings();
     settings.degree = 3;
-    double axial = 0.0;
-    for (const PolynomialBasis basis : {PolynomialBasis::axial, PolynomialBasis::twoPlane,
-                                        PolynomialBasis::cartesian, PolynomialBasis::none}) {
+    // All six axial terms of degree 3 against 12 of 16 for each output, and 40 of 56 for all.
+    settings.terms = 6;
+    const double axial =
+        fitLens(doubleGauss(), doubleGaussDomain(), settings).errors.directionMrad.rms;
+    for (const auto& [basis, terms] : {std::pair(PolynomialBasis::twoPlane, 12),
+                                       {PolynomialBasis::cartesian, 12},
+                                       {PolynomialBasis::none, 40}}) {
         settings.basis = basis;
-        settings.terms = basis == PolynomialBasis::axial ? 6 : 12;
+        settings.terms = terms;
         const LensFit fit = fitLens(doubleGauss(), doubleGaussDomain(), settings);
         CHECK(fit.errors.directionMrad.rms < 1.0);
-        if (basis == PolynomialBasis::axial)
-            axial = fit.errors.directionMrad.rms;
-        else
-            CHECK(fit.errors.directionMrad.rms > axial);
+        CHECK(fit.errors.directionMrad.rms > 0.9 * axial);
     }
 }
 
@@ -121,52 +123,66 @@ TEST_CASE("Lens fit: clipping by polynomials decides as the exact trace does") {
     for (const FitRay& ray : drawFitRays(lens, fit.domain, 200, 8).rays) {
         const double expected =
             (ray.pupil.x * ray.pupil.x + ray.pupil.y * ray.pupil.y) / (20.0 * 20.0);
-        const double fitted = evaluator
-                                  .evaluate({ray.query.sensor.mm, ray.query.aperture.mm,
-                                             ray.query.wavelengthNm})
-                                  .values[0];
+        const double fitted =
+            evaluator.evaluate({ray.query.sensor.mm, ray.query.aperture.mm, ray.query.wavelengthNm})
+                .values[0];
         CHECK(std::abs(fitted - expected) < 1e-3);
     }
 }
 
 namespace {
 
-struct AccuracyGoal {
-    const char* file;
-    Eigen::Vector2d sensorHalfSizeMm;
-    double imageRadiusMm;
-    PolynomialBasis basis;
-    double mradWith32, mradWith64;
-};
+constexpr double full = std::numeric_limits<double>::infinity();
+
+/// Held out, over the whole sensor, the whole aperture and 400–700 nm, rms.
+void checkAccuracy(const char* file, const FitDomain& domain, PolynomialBasis basis, int terms,
+                   double mrad) {
+    CAPTURE(file);
+    FitSettings settings;
+    settings.basis = basis;
+    settings.terms = terms;
+    const LensFit fit = fitLens(loadPrescription(lensFile(file)), domain, settings);
+    CHECK(fit.errors.directionMrad.rms < mrad);
+    CHECK(fit.errors.unsolved == 0);
+    CHECK(fit.clipErrors.wronglyAccepted < 0.005);
+    CHECK(fit.clipErrors.wronglyBlocked < 0.005);
+}
+
+void checkAxialAccuracy(const char* file, Eigen::Vector2d sensorHalfSizeMm, double imageRadiusMm,
+                        double mradWith32, double mradWith64) {
+    const FitDomain domain =
+        domainOf(loadPrescription(lensFile(file)), sensorHalfSizeMm, imageRadiusMm);
+    checkAccuracy(file, domain, PolynomialBasis::axial, 32, mradWith32);
+    checkAccuracy(file, domain, PolynomialBasis::axial, 64, mradWith64);
+}
 
 }  // namespace
 
-TEST_CASE("Lens fit: the outgoing direction is as accurate as the goals ask, on every kind of lens" *
+TEST_CASE("Lens fit: directions through the double Gauss are off by 7 µrad, then 1.2" *
           doctest::test_suite("statistical")) {
-    constexpr double full = std::numeric_limits<double>::infinity();
-    const AccuracyGoal goals[] = {
-        {"double-gauss-100mm.toml", {18.0, 12.0}, full, PolynomialBasis::axial, 0.007, 0.0012},
-        {"fisheye-10mm.toml", {11.8, 7.85}, full, PolynomialBasis::axial, 0.22, 0.066},
-        {"fisheye-181-10mm.toml", {14.2, 14.2}, 14.2, PolynomialBasis::axial, 0.45, 0.24},
-        {"fisheye-220-6mm-f2.8.toml", {12.0, 12.0}, 12.0, PolynomialBasis::axial, 0.18, 0.054},
-        {"anamorphic-80x90mm.toml", {11.8, 7.85}, full, PolynomialBasis::twoPlane, full, 0.1},
-    };
-    for (const AccuracyGoal& goal : goals) {
-        CAPTURE(goal.file);
-        const Prescription prescription = loadPrescription(lensFile(goal.file));
-        const FitDomain domain = domainOf(prescription, goal.sensorHalfSizeMm, goal.imageRadiusMm);
-        FitSettings settings;
-        settings.basis = goal.basis;
-        for (const auto& [terms, mrad] : {std::pair(32, goal.mradWith32), {64, goal.mradWith64}}) {
-            if (std::isinf(mrad)) continue;
-            settings.terms = terms;
-            const LensFit fit = fitLens(prescription, domain, settings);
-            CHECK(fit.errors.directionMrad.rms < mrad);
-            CHECK(fit.errors.unsolved == 0);
-            CHECK(fit.clipErrors.wronglyAccepted < 0.005);
-            CHECK(fit.clipErrors.wronglyBlocked < 0.005);
-        }
-    }
+    checkAxialAccuracy("double-gauss-100mm.toml", {18.0, 12.0}, full, 0.007, 0.0012);
+}
+
+TEST_CASE("Lens fit: directions through a 10 mm fisheye are off by 0.22 mrad, then 0.066" *
+          doctest::test_suite("statistical")) {
+    checkAxialAccuracy("fisheye-10mm.toml", {11.8, 7.85}, full, 0.22, 0.066);
+}
+
+TEST_CASE("Lens fit: directions through an aspheric fisheye are off by 0.45 mrad, then 0.24" *
+          doctest::test_suite("statistical")) {
+    checkAxialAccuracy("fisheye-181-10mm.toml", {14.2, 14.2}, 14.2, 0.45, 0.24);
+}
+
+TEST_CASE("Lens fit: directions through a 220 degree fisheye are off by 0.18 mrad, then 0.054" *
+          doctest::test_suite("statistical")) {
+    checkAxialAccuracy("fisheye-220-6mm-f2.8.toml", {12.0, 12.0}, 12.0, 0.18, 0.054);
+}
+
+TEST_CASE("Lens fit: directions through the anamorphic lens are off by 0.1 mrad" *
+          doctest::test_suite("statistical")) {
+    const char* file = "anamorphic-80x90mm.toml";
+    checkAccuracy(file, domainOf(loadPrescription(lensFile(file)), {11.8, 7.85}),
+                  PolynomialBasis::twoPlane, 64, 0.1);
 }
 
 }  // namespace etendue

@@ -99,8 +99,8 @@ TEST_CASE("Sparse fit: the coefficients are those of least squares on the chosen
         Eigen::MatrixXd columns(static_cast<Eigen::Index>(inputs.size()), 12);
         for (Eigen::Index t = 0; t < 12; ++t) {
             SparsePolynomial single{PolynomialBasis::none, {0, 1}, fit.scaling, {}};
-            single.groups = {{{0}, {group.terms[static_cast<std::size_t>(t)]},
-                              Eigen::MatrixXd::Ones(1, 1)}};
+            single.groups = {
+                {{0}, {group.terms[static_cast<std::size_t>(t)]}, Eigen::MatrixXd::Ones(1, 1)}};
             columns.col(t) = valuesOf(single, inputs);
         }
         const Eigen::VectorXd expected =

@@ -279,10 +279,11 @@ TEST_CASE("TracedLens: wide open the 220° fisheye folds, and still each ray is 
 }
 
 TEST_CASE("TracedLens: fisheyes see behind themselves") {
-    for (const auto& [file, height] :
-         {std::pair("fisheye-220-6mm-f2.8.toml", 11.2), std::pair("fisheye-10mm.toml", 13.6)}) {
-        CAPTURE(file);
-        const Fixture fixture({file, height});
+    for (const ShippedLens& shipped :
+         {ShippedLens{"fisheye-220-6mm-f2.8.toml", 11.2}, ShippedLens{"fisheye-10mm.toml", 13.6}}) {
+        CAPTURE(shipped.file);
+        const Fixture fixture(shipped);
+        const double height = shipped.imageHeightMm;
         const auto chief = fixture.lens->trace({{height, 0.0}}, {{0.0, 0.0}}, greenNm);
         REQUIRE(chief.has_value());
         CHECK(chief->direction.z() < -0.02);

@@ -1,0 +1,37 @@
+// Fit files: a LensFit as JSON, with what it was fitted to and its measured errors, so that a lens
+// is fitted once. nlohmann-json is known to fit_file.cpp alone.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "lens/lens_fit.h"
+
+namespace etendue {
+
+/// Written beside `file` and renamed over it, so that no reader ever meets half a file. Throws
+/// std::runtime_error, naming the file, when that fails.
+void writeFitFile(const std::filesystem::path& file, const LensFit& fit);
+
+/// What a fit must have been made for.
+struct FitKey {
+    std::uint64_t prescriptionHash = 0;
+    FitDomain domain;
+    FitSettings settings;
+
+    bool operator==(const FitKey&) const = default;
+};
+FitKey fitKey(const Prescription& prescription, const FitDomain& domain,
+              const FitSettings& settings);
+
+/// A fit, or why there is none: the file is missing, truncated, changed, none of ours, or of
+/// another lens, domain or settings. Every number comes back with the bits it was written with.
+struct FitFileContent {
+    std::optional<LensFit> fit;
+    std::string refusal;
+};
+FitFileContent readFitFile(const std::filesystem::path& file);
+FitFileContent readFitFile(const std::filesystem::path& file, const FitKey& key);
+
+}  // namespace etendue

@@ -1,0 +1,262 @@
+#include "lens/lens_fit.h"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "lens/parallel.h"
+#include "lens/polynomial.h"
+#include "lens/sparse_fit.h"
+
+namespace etendue {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::uint64_t trainingSeed = 1, heldOutSeed = 2;
+
+PolynomialInput inputOf(const FitRay& ray, FitForm form) {
+    const Eigen::Vector2d& second = form == FitForm::twoPoint ? ray.query.aperture.mm : ray.slope;
+    return {ray.query.sensor.mm, second, ray.query.wavelengthNm};
+}
+
+constexpr OutputCount exitOutputs{2, 1}, apertureOutputs{2, 0};
+
+MatrixXd exitTargets(const std::vector<FitRay>& rays, FitForm form) {
+    MatrixXd targets(static_cast<Index>(rays.size()), exitOutputs.total());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const PupilState<double>& pupil = rays[i].pupil;
+        targets.row(static_cast<Index>(i)) << pupil.x, pupil.y, pupil.directionX, pupil.directionY,
+            form == FitForm::twoPoint ? rays[i].throughput : rays[i].transmittance;
+    }
+    return targets;
+}
+
+MatrixXd apertureTargets(const std::vector<FitRay>& rays) {
+    MatrixXd targets(static_cast<Index>(rays.size()), apertureOutputs.total());
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        targets.row(static_cast<Index>(i)) << rays[i].query.aperture.mm.transpose(),
+            rays[i].apertureSlope.transpose();
+    return targets;
+}
+
+/// How much of an output's unit is as bad as one radian of direction: the support is chosen for
+/// directions above all, for positions as they look from a distance, for throughput as the eye
+/// sees it.
+VectorXd exitTolerances(const MatrixXd& targets) {
+    const double pupilRadius = std::sqrt(targets.leftCols<2>().rowwise().squaredNorm().maxCoeff());
+    const double brightness = targets.col(4).cwiseAbs().mean();
+    VectorXd tolerances(exitOutputs.total());
+    tolerances << 10.0 * pupilRadius, 10.0 * pupilRadius, 1.0, 1.0, 10.0 * brightness;
+    return tolerances;
+}
+
+VectorXd apertureTolerances(const MatrixXd& targets) {
+    const double radius = std::sqrt(targets.leftCols<2>().rowwise().squaredNorm().maxCoeff());
+    const double slope = std::sqrt(targets.rightCols<2>().rowwise().squaredNorm().maxCoeff());
+    VectorXd tolerances(apertureOutputs.total());
+    tolerances << radius, radius, 10.0 * slope, 10.0 * slope;
+    return tolerances;
+}
+
+/// The directions once more, in the tangent frame at the *fitted* pupil position: what the position
+/// is off by then turns no direction.
+MatrixXd atFittedPosition(const SparsePolynomial& exit, const std::vector<FitRay>& rays,
+                          std::span<const PolynomialInput> inputs, const PupilSphere& sphere,
+                          MatrixXd targets) {
+    const PolynomialEvaluator<double> evaluator(exit);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const PolynomialResult<double> fitted = evaluator.evaluate(inputs[i]);
+        const std::optional<LensRay<double>> there =
+            sphere.ray({fitted.values[0], fitted.values[1], 0.0, 0.0});
+        if (!there) continue;  // beyond the equator: as it was
+        const auto state =
+            sphere.state(LensRay<double>{there->origin, fromEigen(rays[i].direction)});
+        if (!state) continue;
+        targets(static_cast<Index>(i), 2) = state->directionX;
+        targets(static_cast<Index>(i), 3) = state->directionY;
+    }
+    return targets;
+}
+
+std::size_t trainingCount(const std::vector<TermGroup>& candidates, const FitSettings& settings) {
+    std::size_t most = 0;
+    for (const TermGroup& group : candidates) most = std::max(most, group.terms.size());
+    return std::clamp<std::size_t>(most * static_cast<std::size_t>(settings.raysPerCandidate), 4000,
+                                   100'000);
+}
+
+}  // namespace
+
+ErrorSummary summarize(std::vector<double> magnitudes) {
+    if (magnitudes.empty()) return {};
+    double squares = 0.0;
+    for (const double m : magnitudes) squares += m * m;
+    std::ranges::sort(magnitudes);
+    const std::size_t rank =
+        static_cast<std::size_t>(std::ceil(0.999 * static_cast<double>(magnitudes.size())));
+    return {std::sqrt(squares / static_cast<double>(magnitudes.size())), magnitudes[rank - 1],
+            magnitudes.back()};
+}
+
+LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
+                const FitSettings& settings) {
+    const TracedLens lens = lensOf(prescription, domain);
+    const PupilSphere sphere(lens.system());
+    LensFit fit;
+    fit.settings = settings;
+    fit.domain = domain;
+    fit.prescriptionHash = contentHash(prescription);
+    const std::vector<TermGroup> candidates =
+        candidateTerms(settings.basis, settings.degree, exitOutputs);
+    const FitRays training =
+        drawFitRays(lens, domain, trainingCount(candidates, settings), trainingSeed);
+    if (training.rays.empty())
+        throw std::invalid_argument("lens fit: no ray passes " + prescription.name);
+    fit.training = training.counts;
+    std::vector<PolynomialInput> inputs;
+    for (const FitRay& ray : training.rays) inputs.push_back(inputOf(ray, settings.form));
+    // On an axial lens stop and sensor points are drawn independently, and batches are faster
+    // uncoupled; the rims of others leave them related.
+    const bool related =
+        settings.form == FitForm::sensorState || settings.basis != PolynomialBasis::axial;
+    const InputScaling scaling =
+        scalingFor(settings.basis, inputs, related ? Coupling::fitted : Coupling::none);
+    const SparseFitOptions options{settings.terms, settings.refinements};
+    const MatrixXd targets = exitTargets(training.rays, settings.form);
+    fit.exit = fitSparse(settings.basis, exitOutputs, candidates, scaling, inputs, targets,
+                         exitTolerances(targets), options);
+    fit.exit =
+        refit(fit.exit, inputs, atFittedPosition(fit.exit, training.rays, inputs, sphere, targets));
+    if (settings.form == FitForm::sensorState) {
+        const MatrixXd apertures = apertureTargets(training.rays);
+        fit.aperture =
+            fitSparse(settings.basis, apertureOutputs,
+                      candidateTerms(settings.basis, settings.degree, apertureOutputs), scaling,
+                      inputs, apertures, apertureTolerances(apertures), options);
+    }
+    fit.clip = fitClip(lens, domain, settings.basis, settings.clip);
+    fit.errors = measureErrors(fit, lens, 10'000, heldOutSeed);
+    fit.clipErrors = measureClip(fit.clip, lens, domain, 20'000, heldOutSeed);
+    return fit;
+}
+
+namespace {
+
+struct RayErrors {
+    bool solved = false;
+    double pupilMm, directionMrad, sensorMicrometres, throughput, etendue;
+};
+
+/// The slope whose ray crosses the fitted aperture at `aperture`, from the exact one.
+std::optional<PolynomialInput> solveSlope(const PolynomialEvaluator<double>& evaluator,
+                                          const FitRay& ray, double toleranceMm) {
+    PolynomialInput input = inputOf(ray, FitForm::sensorState);
+    for (int i = 0; i < 20; ++i) {
+        const PolynomialResult<double> at = evaluator.evaluate(input);
+        const Eigen::Vector2d miss =
+            Eigen::Vector2d(at.values[0], at.values[1]) - ray.query.aperture.mm;
+        if (miss.norm() < toleranceMm) return input;
+        Eigen::Matrix2d bySlope;
+        bySlope << at.jacobian[0][2], at.jacobian[0][3], at.jacobian[1][2], at.jacobian[1][3];
+        input.p -= bySlope.inverse() * miss;
+        if (!input.p.allFinite()) return {};
+    }
+    return {};
+}
+
+/// Of the outputs `row` and `row + 1`: by s (column 0) or by p (column 2).
+Eigen::Matrix2d block(const PolynomialResult<double>& result, std::size_t row, std::size_t column) {
+    Eigen::Matrix2d m;
+    m << result.jacobian[row][column], result.jacobian[row][column + 1],
+        result.jacobian[row + 1][column], result.jacobian[row + 1][column + 1];
+    return m;
+}
+
+}  // namespace
+
+FitErrors measureErrors(const LensFit& fit, const TracedLens& lens, std::size_t rays,
+                        std::uint64_t seed) {
+    const bool twoPoint = fit.settings.form == FitForm::twoPoint;
+    const PupilSphere sphere(lens.system());
+    const PolynomialEvaluator<double> exit(fit.exit);
+    const PolynomialEvaluator<double> aperture(twoPoint ? fit.exit : fit.aperture);
+    const FitRays heldOut = drawFitRays(lens, fit.domain, rays, seed);
+    double brightness = 0.0;
+    for (const FitRay& ray : heldOut.rays)
+        brightness += ray.throughput / static_cast<double>(heldOut.rays.size());
+
+    std::vector<RayErrors> errors(heldOut.rays.size());
+    const auto measure = [&](std::size_t i) {
+        const FitRay& ray = heldOut.rays[i];
+        RayErrors& error = errors[i];
+        PolynomialInput input = inputOf(ray, fit.settings.form);
+        Eigen::Matrix2d slopeByAperture = Eigen::Matrix2d::Zero(), slopeBySensor = slopeByAperture;
+        double j = 1.0;
+        if (!twoPoint) {
+            const auto solved = solveSlope(aperture, ray, 1e-9 * fit.domain.apertureRadiusMm);
+            if (!solved) return;
+            input = *solved;
+            const PolynomialResult<double> at = aperture.evaluate(input);
+            slopeByAperture = block(at, 0, 2).inverse();
+            slopeBySensor = -slopeByAperture * block(at, 0, 0);
+            const double cosSquared = 1.0 / (1.0 + input.p.squaredNorm());
+            j = cosSquared * cosSquared * std::abs(slopeByAperture.determinant());
+        }
+        const PolynomialResult<double> at = exit.evaluate(input);
+        const PupilState<double> state{at.values[0], at.values[1], at.values[2], at.values[3]};
+        const std::optional<LensRay<double>> there = sphere.ray(state);
+        if (!there) return;
+        error.solved = true;
+        error.pupilMm = std::hypot(state.x - ray.pupil.x, state.y - ray.pupil.y);
+        const Eigen::Vector3d off = toEigen(there->direction) - ray.direction;
+        error.directionMrad = 1e3 * off.norm();
+        // Both form dependent Jacobians by (s, a).
+        Eigen::Matrix4d byBoth;
+        for (std::size_t v = 0; v < 2; ++v) {
+            Eigen::Matrix2d bySensor = block(at, 2 * v, 0), bySecond = block(at, 2 * v, 2);
+            if (!twoPoint) {
+                bySensor += bySecond * slopeBySensor;
+                bySecond *= slopeByAperture;
+            }
+            byBoth.block<2, 2>(static_cast<Index>(2 * v), 0) = bySensor;
+            byBoth.block<2, 2>(static_cast<Index>(2 * v), 2) = bySecond;
+        }
+        error.sensorMicrometres =
+            1e3 * ray.directionBySensor.colPivHouseholderQr().solve(off).norm();
+        const double throughput = j * at.values[4];
+        error.throughput = std::abs(throughput - ray.throughput) / brightness;
+        const double fittedJ = twoPoint ? throughput / ray.transmittance : j;
+        error.etendue = std::abs(
+            std::abs(byBoth.determinant()) / (sphere.normalZ(state.x, state.y) * fittedJ) - 1.0);
+    };
+    parallelFor(errors.size(), measure);
+
+    FitErrors result;
+    std::array<std::vector<double>, 5> columns;
+    for (const RayErrors& error : errors) {
+        ++result.rays;
+        if (!error.solved) {
+            ++result.unsolved;
+            continue;
+        }
+        columns[0].push_back(error.pupilMm);
+        columns[1].push_back(error.directionMrad);
+        columns[2].push_back(error.sensorMicrometres);
+        columns[3].push_back(error.throughput);
+        columns[4].push_back(error.etendue);
+    }
+    result.pupilMm = summarize(std::move(columns[0]));
+    result.directionMrad = summarize(std::move(columns[1]));
+    result.sensorMicrometres = summarize(std::move(columns[2]));
+    result.throughputRelative = summarize(std::move(columns[3]));
+    result.etendue = summarize(std::move(columns[4]));
+    return result;
+}
+
+}  // namespace etendue

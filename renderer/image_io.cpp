@@ -119,7 +119,7 @@ std::vector<T> readPixels(OIIO::ImageInput& input, const std::vector<int>& chann
                           const std::filesystem::path& file) {
     const OIIO::ImageSpec& spec = input.spec();
     const auto [first, last] = std::ranges::minmax(channels);
-    const auto span = static_cast<std::size_t>(last - first + 1);
+    const auto span = static_cast<std::size_t>(last - first) + 1;
     std::vector<T> pixels(spec.image_pixels() * span);
     const bool isRead =
         input.read_image(0, 0, first, last + 1, OIIO::BaseTypeFromC<T>::value, pixels.data());

@@ -27,8 +27,13 @@ MakeLight environmentFrom(const ConfigTable& table, LoadingScene& loading) {
             std::abs(rotation.determinant() - 1.0) <
         1e-6;
     if (!isRotation) table.fail("rotation", "only {rotate = […]} steps can turn an environment");
-    return
-        [=](BoundingSphere scene) { return makeEnvironmentLight(image, scale, rotation, scene); };
+    return [=](BoundingSphere scene) {
+        try {
+            return makeEnvironmentLight(image, scale, rotation, scene);
+        } catch (const InputError& error) {
+            table.fail("image", error.what());
+        }
+    };
 }
 
 MakeLight spotFrom(const ConfigTable& table) {

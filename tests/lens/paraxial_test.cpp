@@ -57,6 +57,22 @@ TEST_CASE(
           doctest::Approx(5.0).epsilon(1e-9));
 }
 
+TEST_CASE("paraxialData: a stop in glass is seen through the surface in front of it") {
+    // Behind a plane of index n at depth d it appears at d/n, as large as it is; behind a sphere
+    // n/s′ = … gives z = −1/(n/d − (n − 1)/R), larger by n |z|/d.
+    const double n = 1.5, depth = 12.0;
+    for (const double radius : {30.0, -45.0, std::numeric_limits<double>::infinity()}) {
+        Prescription prescription;
+        prescription.surfaces = {spherical(radius, depth, 5.0, plainGlass(n)), stop(20.0, 3.0),
+                                 spherical(-40.0, 50.0, 5.0)};
+        prescription.surfaces[1].behind = plainGlass(n);
+        const ParaxialAxis axis = paraxialData(OpticalSystem(prescription)).y;
+        const double image = 1.0 / (n / depth - (n - 1.0) / radius);
+        CHECK(axis.entrancePupilZMm == doctest::Approx(-image).epsilon(1e-13));
+        CHECK(axis.entrancePupilPerStop == doctest::Approx(n * image / depth).epsilon(1e-13));
+    }
+}
+
 TEST_CASE("paraxialData: in every lens it is the limit of exact rays near the axis") {
     for (const ShippedLens& shipped : shippedLenses()) {
         CAPTURE(shipped.file);

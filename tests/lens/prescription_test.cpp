@@ -243,6 +243,10 @@ TEST_CASE("Prescription: the hash tells lenses apart and looks at nothing but op
     CHECK(differs([](Surface& s) { s.asphere[6] = 1e-30; }));
     CHECK(differs([](Surface& s) { s.behind = plainGlass(1.5); }));
     CHECK(differs([](Surface& s) { s.coating = Coating{}; }));
+    Prescription coated = lens, recoated = lens;
+    coated.surfaces[0].coating = Coating{};
+    recoated.surfaces[0].coating = Coating{1.38, 551.0, 0.25};
+    CHECK(contentHash(coated) != contentHash(recoated));
 }
 
 TEST_CASE("Prescription: a scaled lens has scaled distances and the same f-number") {

@@ -389,7 +389,8 @@ TEST_CASE("Image I/O: 32-bit integers are refused as colours, not beside them") 
     writeSample(folder / "a.exr", spec, Floats{0.5f, 1.0f, 2.0f, 1.0f});
     CHECK(std::get<Floats>(readImage(folder / "a.exr").pixels) == Floats{0.5f, 1.0f, 2.0f});
 
-    spec.channelformats = {OIIO::TypeUInt32, OIIO::TypeUInt32, OIIO::TypeUInt32, OIIO::TypeFloat};
+    spec.channelformats.assign(4, OIIO::TypeUInt32);
+    spec.channelformats[3] = OIIO::TypeFloat;
     writeSample(folder / "b.exr", spec, Floats{0.5f, 1.0f, 0.25f, 1.0f});
     CHECK(errorOf(folder / "b.exr").find("has uint pixels") != std::string::npos);
 }

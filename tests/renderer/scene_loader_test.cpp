@@ -273,3 +273,19 @@ TEST_CASE("Scene loader: the thin lens is focused where the distance from the se
         CHECK(std::abs(p.y) < 1e-6f);
     }
 }
+
+TEST_CASE("Scene loader: an environment with negative light is refused at the line that names it") {
+    const TemporaryFolder folder;
+    writeExr(folder / "sky.exr", {2, 1, 0, 0, 2, 1}, {{{"R", "G", "B"}, {1, 1, 1, 1, -1, 1}}}, {});
+    const auto file =
+        folder.write("scene.toml", "[[light]]\ntype = \"environment\"\nimage = \"sky.exr\"\n");
+    try {
+        loadScene(file, {{}, 1});
+        FAIL_CHECK("accepted");
+    } catch (const InputError& error) {
+        const std::string message = error.what();
+        CAPTURE(message);
+        CHECK(message.find("scene.toml:3") != std::string::npos);
+        CHECK(message.find("(1, 0)") != std::string::npos);
+    }
+}

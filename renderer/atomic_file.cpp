@@ -36,24 +36,24 @@ private:
     int fd_;
 };
 
-/// Removes what is left under a name in the end; after a rename that is nothing.
-class Temporary {
+/// Removes what lies under a name in the end; after a rename that is nothing.
+class RemovalAtEnd {
 public:
-    explicit Temporary(fs::path path) : path_(std::move(path)) {}
-    Temporary(const Temporary&) = delete;
-    Temporary& operator=(const Temporary&) = delete;
-    ~Temporary() { ::unlink(path_.c_str()); }
+    explicit RemovalAtEnd(fs::path path) : path_(std::move(path)) {}
+    RemovalAtEnd(const RemovalAtEnd&) = delete;
+    RemovalAtEnd& operator=(const RemovalAtEnd&) = delete;
+    ~RemovalAtEnd() { ::unlink(path_.c_str()); }
 
 private:
     fs::path path_;
 };
 
-/// Where a chain of symbolic links leads, whether or not anything is there yet; still a link if the
-/// chain is longer than the kernel follows.
+/// Where a chain of symbolic links leads, whether or not anything is there yet. The caller knows
+/// that it is no loop.
 fs::path followLinks(const fs::path& file) {
     fs::path target = file;
     std::error_code error;
-    for (int links = 0; links < 40 && fs::is_symlink(target, error); ++links) {
+    while (fs::is_symlink(target, error)) {
         target = target.parent_path() / fs::read_symlink(target, error);
         if (error) fail(file, error.value());
     }
@@ -98,14 +98,14 @@ void writeInPlace(const fs::path& file, const void* data, std::size_t size) {
 }  // namespace
 
 void writeFileAtomically(const fs::path& file, const void* data, std::size_t size) {
-    const fs::path target = followLinks(file);
     struct stat old {};
-    const bool exists = ::stat(target.c_str(), &old) == 0;
+    const bool exists = ::stat(file.c_str(), &old) == 0;
     if (!exists && errno != ENOENT) fail(file);
     if (exists && !S_ISREG(old.st_mode)) return writeInPlace(file, data, size);
     // A rename would replace a read-only file without a word.
-    if (exists && ::access(target.c_str(), W_OK) != 0) fail(file);
+    if (exists && ::access(file.c_str(), W_OK) != 0) fail(file);
 
+    const fs::path target = followLinks(file);
     const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
     const fs::path temporary =
         folder / ("." + target.filename().string() + ".tmp-" + std::to_string(::getpid()));
@@ -113,7 +113,7 @@ void writeFileAtomically(const fs::path& file, const void* data, std::size_t siz
     if (::unlink(temporary.c_str()) != 0 && errno != ENOENT) fail(file);
     Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode_t{0666}));
     if (!fd.isOpen()) fail(file);
-    const Temporary removed(temporary);
+    const RemovalAtEnd removal(temporary);
 
     if (exists && ::fchmod(fd.get(), old.st_mode & mode_t{0777}) != 0) fail(file);
     writeAll(fd.get(), data, size, file);

@@ -28,12 +28,12 @@ public:
                 result += throughput * environment(scene, ray, pdfSolidAngle);
                 return result;
             }
-            const float distance = length(point->position - ray.origin);
             const BsdfContext context{point->uv, Transport::radiance, wavelengths};
             if (depth == 1 && firstHit)
-                *firstHit = {*point, point->material->bsdf->albedo(context), distance};
+                *firstHit = {*point, point->material->bsdf->albedo(context),
+                             length(point->position - ray.origin)};
             if (point->light >= 0)
-                result += throughput * emission(scene, *point, ray, distance, pdfSolidAngle);
+                result += throughput * emission(scene, *point, ray, pdfSolidAngle);
             if (depth == settings_.maxDepth) return result;
 
             const Vec3 wo = -ray.direction;
@@ -52,10 +52,11 @@ public:
     }
 
 private:
-    Spectrum emission(const Scene& scene, const SurfacePoint& point, const Ray& ray, float distance,
+    Spectrum emission(const Scene& scene, const SurfacePoint& point, const Ray& ray,
                       std::optional<float> pdfSolidAngle) const {
         const LightTable& lights = scene.lights();
-        const EmitterHit hit{ray.direction, distance, point.geometricNormal};
+        const EmitterHit hit{ray.direction, length(point.position - ray.origin),
+                             point.geometricNormal};
         const Light& light = lights[point.light];
         const Spectrum radiance = light.radiance(hit);
         if (!pdfSolidAngle || isBlack(radiance)) return radiance;

@@ -54,15 +54,14 @@ SurfacePoint surfacePoint(const Mesh& mesh, const Instance& instance, const RayH
     point.geometricNormal = toFloat(normalize(normal));
     Vec3 shadingNormal = point.geometricNormal;
     if (!mesh.normals.empty()) {
-        const Vec3 n = mesh.normals[index[0]] * static_cast<float>(b0) +
-                       mesh.normals[index[1]] * hit.b1 + mesh.normals[index[2]] * hit.b2;
-        Vec3d mapped = isInWorldSpace ? toDouble(n) : t.normal(toDouble(n));
-        if (isMirrored) mapped = -mapped;
+        Vec3 n = mesh.normals[index[0]] * static_cast<float>(b0) + mesh.normals[index[1]] * hit.b1 +
+                 mesh.normals[index[2]] * hit.b2;
+        // An instance may scale by any factor: unit in double before it is a float again.
+        if (!isInWorldSpace && lengthSquared(n) > 0.0f)
+            n = toFloat(normalize(t.normal(toDouble(n))));
         // Opposite vertex normals may cancel; then the plane's own normal is the only one left.
-        if (lengthSquared(mapped) > 0.0) {
-            const Vec3 unit = toFloat(normalize(mapped));
-            shadingNormal = dot(unit, point.geometricNormal) < 0 ? -unit : unit;
-        }
+        if (lengthSquared(n) > 0.0f)
+            shadingNormal = normalize(dot(n, point.geometricNormal) < 0 ? -n : n);
     }
     point.shading = Frame::fromZ(shadingNormal);
     if (!mesh.textureCoordinates.empty())

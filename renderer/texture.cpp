@@ -10,17 +10,14 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/srgb.h"
+
 namespace etendue {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 using Floats = std::vector<float>;
 using ByteTable = std::array<float, 256>;
-
-/// IEC 61966-2-1.
-double linearFromSrgb(double encoded) {
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
 
 ByteTable makeTable(ColorEncoding encoding) {
     ByteTable table;

@@ -11,7 +11,7 @@
 #include "lens/paraxial.h"
 #include "lens/prescription_check.h"
 #include "tests/lens/prescriptions.h"
-#include "tests/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace etendue {
 namespace {

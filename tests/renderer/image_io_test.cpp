@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "config/config.h"
-#include "tests/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace etendue;
 

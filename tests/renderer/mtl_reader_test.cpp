@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tests/config/error_message.h"
-#include "tests/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace etendue {
 namespace {

@@ -11,7 +11,7 @@
 #include "renderer/obj_loader.h"
 #include "tests/config/error_message.h"
 #include "tests/renderer/mesh_measures.h"
-#include "tests/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace etendue {
 namespace {

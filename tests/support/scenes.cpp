@@ -9,7 +9,8 @@ namespace etendue {
 
 LoadedScene sceneFromText(const std::string& text, const std::vector<std::string>& overrides) {
     const TemporaryFolder folder;
-    return loadScene(folder.write("scene.toml", text), {overrides, 1});
+    return loadScene(folder.write("scene.toml", text),
+                     {overrides, 8});  // Embree caps all threads of the process
 }
 
 std::vector<float> renderPixels(const LoadedScene& loaded, std::uint32_t samples,

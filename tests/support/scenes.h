@@ -7,7 +7,7 @@
 
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
-#include "tests/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace etendue {
 

@@ -7,13 +7,13 @@
 namespace etendue {
 
 std::optional<ExitRay> IdealLens::trace(SensorPoint sensor, AperturePoint aperture) const {
-    const double v = sensorDistanceMm;
-    const Eigen::Vector2d q = (aperture.mm - sensor.mm) / v;  // (5)
+    const double perMm = 1.0 / sensorDistanceMm;                  // 1 / v
+    const Eigen::Vector2d q = (aperture.mm - sensor.mm) * perMm;  // (5)
     const double cosSquared = 1.0 / (1.0 + q.squaredNorm());
-    const double throughput = cosSquared * cosSquared / (v * v);  // J of (5)
-    if (!(throughput > 0.0)) return {};                           // so oblique that it underflows
+    const double throughput = cosSquared * cosSquared * (perMm * perMm);  // J of (5)
+    if (!(throughput > 0.0)) return {};  // so oblique that it underflows
 
-    const Eigen::Vector2d slope = -sensor.mm / v - aperture.mm * focusCurvaturePerMm;  // (6)
+    const Eigen::Vector2d slope = -sensor.mm * perMm - aperture.mm * focusCurvaturePerMm;  // (6)
     const double inverseLength = 1.0 / std::sqrt(1.0 + slope.squaredNorm());
 
     ExitRay ray;
@@ -23,7 +23,7 @@ std::optional<ExitRay> IdealLens::trace(SensorPoint sensor, AperturePoint apertu
     // ∂slope/∂s = −1/v; normalising the direction takes away what would lengthen it.
     ray.directionBySensor = ray.direction * ray.direction.head<2>().transpose();
     ray.directionBySensor.topRows<2>() -= Eigen::Matrix2d::Identity();
-    ray.directionBySensor *= inverseLength / v;
+    ray.directionBySensor *= inverseLength * perMm;
     ray.throughput = throughput;
     return ray;
 }

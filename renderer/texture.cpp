@@ -140,8 +140,7 @@ Spectrum Texture::texel(int x, int y) const {
     return rgb(value[0], value[step], value[2 * step]);
 }
 
-Spectrum Texture::color(Vec2 uv) const {
-    if (!image_) return constant_;
+Spectrum Texture::imageColor(Vec2 uv) const {
     const Footprint at = footprint(uv, *image_, wrap_);
     const ByteTable& table = tableOf(encoding_);
     const std::size_t step = colorStep(*image_);

@@ -25,7 +25,7 @@ public:
     Texture(Image image, ColorEncoding encoding, TextureWrap wrap = TextureWrap::repeat);
 
     /// Colours of images have 0 in the last lane; grey ones are equal in the others.
-    Spectrum color(Vec2 uv) const;
+    Spectrum color(Vec2 uv) const { return image_ ? imageColor(uv) : constant_; }
     /// Images with alpha: alpha; else the first channel, in the given encoding.
     float scalar(Vec2 uv) const;
 
@@ -38,6 +38,8 @@ public:
     Spectrum average() const;
 
 private:
+    Spectrum imageColor(Vec2 uv) const;
+
     Spectrum constant_;
     std::shared_ptr<const Image> image_;
     ColorEncoding encoding_ = ColorEncoding::linear;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <optional>
 
 #include "lens/lens_model.h"
@@ -12,8 +11,9 @@
 
 namespace etendue {
 
-/// A(s, q) = a by Newton's method on the exact trace, rims ignored, from the paraxial guess; and
-/// where that fails, by following the solution from the axis outward.
+/// A(s, q) = a by Newton's method on the exact trace, rims ignored, from the paraxial guess. It
+/// finds every ray that passes a lens we know; what it does not find, the rear elements lead
+/// elsewhere.
 class SlopeSolver {
 public:
     /// `paraxial` for the sensor's plane.
@@ -23,9 +23,28 @@ public:
           sensorZMm_(sensorZMm),
           scaleMm_(lens.system.surfaces[lens.system.stop].semiApertureMm) {}
 
+    /// Steps are halved until the miss shrinks.
     std::optional<Eigen::Vector2d> solve(SensorPoint sensor, AperturePoint aperture) const {
-        if (const auto q = newton(sensor, aperture, guess(sensor, aperture))) return q;
-        return follow(sensor, aperture);
+        Eigen::Vector2d q = guess(sensor, aperture);
+        std::optional<StopHit> at = hit(sensor, q);
+        constexpr int mostSteps = 12, mostHalvings = 4;
+        for (int i = 0; at && i < mostSteps; ++i) {
+            const Eigen::Vector2d miss = at->mm - aperture.mm;
+            const Eigen::Vector2d step = at->bySlope.inverse() * miss;
+            if (!step.allFinite()) return {};
+            // One more step squares what is missing: far below rounding.
+            if (miss.norm() <= 1e-8 * scaleMm_) return q - step;
+            std::optional<StopHit> next;
+            double share = 1.0;
+            for (int halving = 0; halving < mostHalvings; ++halving, share *= 0.5) {
+                next = hit(sensor, q - share * step);
+                if (next && (next->mm - aperture.mm).norm() < miss.norm()) break;
+                next.reset();
+            }
+            q -= share * step;
+            at = next;
+        }
+        return {};
     }
 
 private:
@@ -54,52 +73,6 @@ private:
         result.mm << x.value, y.value;
         result.bySlope << x.partials[0], x.partials[1], y.partials[0], y.partials[1];
         return result;
-    }
-
-    /// Steps are halved until the miss shrinks.
-    std::optional<Eigen::Vector2d> newton(SensorPoint sensor, AperturePoint aperture,
-                                          Eigen::Vector2d q) const {
-        std::optional<StopHit> at = hit(sensor, q);
-        constexpr int mostSteps = 12, mostHalvings = 4;
-        for (int i = 0; at && i < mostSteps; ++i) {
-            const Eigen::Vector2d miss = at->mm - aperture.mm;
-            const Eigen::Vector2d step = at->bySlope.inverse() * miss;
-            if (!step.allFinite()) return {};
-            // One more step squares what is missing: far below rounding.
-            if (miss.norm() <= 1e-8 * scaleMm_) return q - step;
-            std::optional<StopHit> next;
-            double share = 1.0;
-            for (int halving = 0; halving < mostHalvings; ++halving, share *= 0.5) {
-                next = hit(sensor, q - share * step);
-                if (next && (next->mm - aperture.mm).norm() < miss.norm()) break;
-                next.reset();
-            }
-            q -= share * step;
-            at = next;
-        }
-        return {};
-    }
-
-    /// From the axis, where q = 0, outward along (t s, t a).
-    std::optional<Eigen::Vector2d> follow(SensorPoint sensor, AperturePoint aperture) const {
-        double reached = 0.0, stride = 0.25;
-        Eigen::Vector2d q(0.0, 0.0);
-        constexpr double shortest = 1.0 / 32.0;
-        while (stride >= shortest) {
-            const double t = std::min(1.0, reached + stride);
-            const SensorPoint s{t * sensor.mm};
-            const AperturePoint a{t * aperture.mm};
-            const Eigen::Vector2d start =
-                reached > 0.0 ? Eigen::Vector2d(q * (t / reached)) : guess(s, a);
-            if (const auto found = newton(s, a, start)) {
-                q = *found;
-                if (t == 1.0) return q;
-                reached = t;
-            } else {
-                stride *= 0.5;
-            }
-        }
-        return {};
     }
 
     const MonochromaticSystem& lens_;

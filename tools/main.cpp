@@ -1,11 +1,13 @@
-// The command line. CLI11 is known to this file alone.
+// The command line. CLI11 is known to this file and to lens_command.cpp alone.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <map>
 
+#include "tools/lens_command.h"
 #include "tools/render_command.h"
 #include "tools/version.h"
 
@@ -19,6 +21,7 @@ Examples:
   etendue render scene.toml -o a.exr -s camera.f_number=5.6 -s material.glass.ior=1.7
   etendue render scene.toml -o a.exr --time 60 --layers albedo,normal,depth
   etendue check scene.toml
+  etendue lens info double-gauss-100mm
 
 Exit codes:
   0 success   1 failure (disk full, out of memory)   64 wrong usage   65 bad input
@@ -110,12 +113,15 @@ ExitCode run(int argc, char** argv) {
     CheckCommand check;
     addRender(app, render);
     addCheck(app, check);
+    std::function<ExitCode()> chosenLensCommand;
+    addLensCommands(app, chosenLensCommand);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         const int code = app.exit(error);
         return code == 0 ? ExitCode::success : ExitCode::usage;
     }
+    if (chosenLensCommand) return chosenLensCommand();
     return app.got_subcommand("render") ? runRender(render) : runCheck(check);
 }
 

@@ -4,12 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <vector>
 
 #include "renderer/render.h"
@@ -17,31 +14,39 @@
 
 namespace {
 
-/// While on, every Embree query is timed. The linker puts these wrappers in the place of Embree's
-/// functions (--wrap), so that the renderer itself carries no measuring code.
-std::atomic<bool> isTiming{false};
-std::atomic<std::int64_t> embreeNanoseconds{0};
-std::atomic<std::int64_t> embreeQueries{0};
+/// While on, every Embree query is timed; only one thread renders then. The linker puts these
+/// wrappers in the place of Embree's functions (--wrap), so that the renderer itself carries no
+/// measuring code.
+bool isTiming = false;
+std::int64_t embreeNanoseconds = 0, embreeQueries = 0;
 
 using Clock = std::chrono::steady_clock;
 
-/// What two readings of the clock cost: they stand inside every timed query.
-std::int64_t clockCost() {
-    constexpr int count = 100000;
-    const auto start = Clock::now();
-    for (int i = 0; i < count; ++i) (void)Clock::now();
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count() /
-           count;
+double nanosecondsSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
 }
 
 template <class Query>
 void timed(const Query& query) {
-    if (!isTiming.load(std::memory_order_relaxed)) return query();
+    if (!isTiming) return query();
     const auto start = Clock::now();
     query();
     embreeNanoseconds +=
         std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
     ++embreeQueries;
+}
+
+/// What timing adds to one query: to the whole, and to what counts as inside of it.
+struct TimingCost {
+    double whole, inside;
+};
+
+TimingCost timingCost() {
+    constexpr int count = 1000000;
+    embreeNanoseconds = 0;
+    const auto start = Clock::now();
+    for (int i = 0; i < count; ++i) timed([] {});
+    return {nanosecondsSince(start) / count, static_cast<double>(embreeNanoseconds) / count};
 }
 
 }  // namespace
@@ -82,24 +87,23 @@ struct Share {
     double nanosecondsPerQuery;
 };
 
-/// One thread. The clock's own cost is taken off both sides.
+/// One thread. What the timing itself costs is measured beside it and taken off both sides.
 Share embreeShare(const LoadedScene& loaded, std::uint32_t samples) {
-    const double clock = static_cast<double>(clockCost());
+    isTiming = true;
+    const TimingCost cost = timingCost();
     embreeNanoseconds = 0;
     embreeQueries = 0;
-    isTiming = true;
     const double total = timeRender(loaded, samples, 1) * 1e9;
     isTiming = false;
     const auto queries = static_cast<double>(embreeQueries);
-    // A reading costs half before and half after the moment it returns.
-    const double inside = static_cast<double>(embreeNanoseconds) - queries * clock;
+    const double inside = static_cast<double>(embreeNanoseconds) - queries * cost.inside;
     const double cameraSamples =
         static_cast<double>(loaded.film.width) * loaded.film.height * samples;
-    return {inside / (total - 2.0 * queries * clock), queries / cameraSamples, inside / queries};
+    return {inside / (total - queries * cost.whole), queries / cameraSamples, inside / queries};
 }
 
-void benchScene(const std::string& name, const std::filesystem::path& file,
-                const std::vector<std::string>& overrides) {
+void benchScene(const std::string& name, const std::filesystem::path& file) {
+    const std::vector<std::string> overrides{"film.width=360", "film.height=240"};
     const auto start = Clock::now();
     const LoadedScene loaded = loadScene(file, {overrides, 2});
     const double loadSeconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -127,17 +131,20 @@ void benchScene(const std::string& name, const std::filesystem::path& file,
 }  // namespace
 }  // namespace etendue
 
-/// Argument: the project's folder.
+/// Arguments: the project's folder; the scene to measure, else all.
 int main(int argc, char** argv) {
     const std::filesystem::path project = argc > 1 ? argv[1] : ".";
+    const std::string wanted = argc > 2 ? argv[2] : "";
     fmt::print("{:<14} {:>9} {:>8} {:>12} {:>10} {:>12} {:>10} {:>12}\n", "scene", "triangles",
                "load s", "Msamples/s*", "1→2 thr.", "rays/sample", "ns/ray", "in Embree");
-    const std::vector<std::string> size{"film.width=360", "film.height=240"};
-    etendue::benchScene("still-life", project / "scenes/still-life/scene.toml", size);
-    etendue::benchScene("cornell-box", project / "scenes/cornell-box/scene.toml", size);
-    if (std::filesystem::exists("/usr/share/glmark2/models/bunny.obj"))
-        etendue::benchScene("bunny", project / "bench/bunny.toml", size);
-    else
-        fmt::print("bunny: not installed (tools/setup.sh --test)\n");
+    for (const std::string name : {"still-life", "cornell-box", "bunny"}) {
+        if (!wanted.empty() && name != wanted) continue;
+        if (name == "bunny" && !std::filesystem::exists("/usr/share/glmark2/models/bunny.obj"))
+            fmt::print("bunny: not installed (tools/setup.sh --test)\n");
+        else
+            etendue::benchScene(name,
+                                project / (name == "bunny" ? "bench/bunny.toml"
+                                                           : "scenes/" + name + "/scene.toml"));
+    }
     fmt::print("* camera samples, two threads; medians of 5 rounds\n");
 }

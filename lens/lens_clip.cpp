@@ -128,9 +128,9 @@ ClipErrors measureClip(const ClipFit& clip, const TracedLens& lens, const FitDom
     const PolynomialEvaluator<double> evaluator(clip.squaredHeights);
     std::size_t accepted = 0, passed = 0, wronglyAccepted = 0, wronglyBlocked = 0;
     for (const RimRay& ray : drawRimRays(lens, domain, rays, seed)) {
-        const PolynomialResult<double> heights = evaluator.evaluate(
-            {ray.query.sensor.mm, ray.query.aperture.mm, ray.query.wavelengthNm});
-        const bool fitted = passesRims({heights.values.data(), clip.surfaces.size()});
+        const PolynomialValues<double> heights =
+            evaluator.values({ray.query.sensor.mm, ray.query.aperture.mm, ray.query.wavelengthNm});
+        const bool fitted = passesRims({heights.data(), clip.surfaces.size()});
         accepted += fitted;
         passed += ray.passes;
         wronglyAccepted += fitted && !ray.passes;

@@ -117,10 +117,8 @@ void composeAxial(const Batch<T, 4>* sums, OutputCount outputs, const AxialChain
                            c[0] * chain.p[i]);
         }
     }
-    for (int u = 2 * outputs.vectors; u < outputs.total(); ++u) {
+    for (int u = 2 * outputs.vectors; u < outputs.total(); ++u)
         result.values[static_cast<std::size_t>(u)] = sums[u][0];
-        store(static_cast<std::size_t>(u), gradient(sums[u]));
-    }
 }
 
 /// The scaled inputs of a batch, and w.
@@ -224,7 +222,7 @@ PolynomialEvaluator<T>::PolynomialEvaluator(const SparsePolynomial& polynomial)
       outputs_(polynomial.outputs),
       scaling_(polynomial.scaling),
       chain_(polynomial.scaling) {
-    if (outputs_.total() > mostOutputs)
+    if (outputs_.total() > mostOutputs || outputs_.vectors > mostVectors)
         throw std::invalid_argument("polynomial: more outputs than can be evaluated together");
     for (const TermGroup& group : polynomial.groups) {
         Group packed{group.outputs, group.terms, {}};
@@ -262,6 +260,7 @@ PolynomialResult<T> PolynomialEvaluator<T>::evaluate(const PolynomialInput& inpu
             for (std::size_t o = 0; o < group.outputs.size(); ++o) {
                 const std::size_t row = static_cast<std::size_t>(group.outputs[o]);
                 result.values[row] = sums[o][0];
+                if (row >= 2 * static_cast<std::size_t>(outputs_.vectors)) continue;
                 for (std::size_t j = 0; j < 4; ++j)
                     result.jacobian[row][j] = sums[o][static_cast<Eigen::Index>(j + 1)];
                 unscale(scaling_, result.jacobian[row]);
@@ -272,8 +271,24 @@ PolynomialResult<T> PolynomialEvaluator<T>::evaluate(const PolynomialInput& inpu
 }
 
 template <class T>
+PolynomialValues<T> PolynomialEvaluator<T>::values(const PolynomialInput& input) const {
+    return evaluate(input).values;
+}
+
+template <class T>
+PolynomialBySensor<T> PolynomialEvaluator<T>::evaluateBySensor(const PolynomialInput& input) const {
+    const PolynomialResult<T> all = evaluate(input);
+    PolynomialBySensor<T> result;
+    result.values = all.values;
+    for (std::size_t row = 0; row < all.jacobian.size(); ++row)
+        result.bySensor[row] = {all.jacobian[row][0], all.jacobian[row][1]};
+    return result;
+}
+
+template <class T>
 template <int Lanes>
-BatchResult<T, Lanes> PolynomialEvaluator<T>::evaluate(const BatchInput<T, Lanes>& input) const {
+PolynomialBySensor<Batch<T, Lanes>> PolynomialEvaluator<T>::evaluateBySensor(
+    const BatchInput<T, Lanes>& input) const {
     if (basis_ != PolynomialBasis::axial)
         throw std::invalid_argument("polynomial: batches are for the axial basis");
     return scaling_.coupling.x() == 0.0 ? evaluateParts<Lanes, 3>(input)
@@ -282,7 +297,7 @@ BatchResult<T, Lanes> PolynomialEvaluator<T>::evaluate(const BatchInput<T, Lanes
 
 template <class T>
 template <int Lanes, int Parts>
-BatchResult<T, Lanes> PolynomialEvaluator<T>::evaluateParts(
+PolynomialBySensor<Batch<T, Lanes>> PolynomialEvaluator<T>::evaluateParts(
     const BatchInput<T, Lanes>& input) const {
     using Pack = Batch<T, Lanes>;
     const std::array<Pack, 5> in = scaledBatch(scaling_, input);
@@ -295,7 +310,7 @@ BatchResult<T, Lanes> PolynomialEvaluator<T>::evaluateParts(
     const std::size_t vectors = static_cast<std::size_t>(outputs_.vectors);
     sweepBatch<T, Lanes, Parts>(variables, highest_, group.terms, group.coefficients.data(),
                                 2 * vectors, count, sums);
-    BatchResult<T, Lanes> result;
+    PolynomialBySensor<Batch<T, Lanes>> result;
     const T ks = static_cast<T>(scaling_.sensorScale);
     const T kc = static_cast<T>(scaling_.secondScale * scaling_.coupling.x());
     // How a coefficient function changes with s in millimetres.
@@ -320,11 +335,11 @@ BatchResult<T, Lanes> PolynomialEvaluator<T>::evaluateParts(
 
 template class PolynomialEvaluator<float>;
 template class PolynomialEvaluator<double>;
-template BatchResult<float, 8> PolynomialEvaluator<float>::evaluate(
+template PolynomialBySensor<Batch<float, 8>> PolynomialEvaluator<float>::evaluateBySensor(
     const BatchInput<float, 8>&) const;
-template BatchResult<float, 16> PolynomialEvaluator<float>::evaluate(
+template PolynomialBySensor<Batch<float, 16>> PolynomialEvaluator<float>::evaluateBySensor(
     const BatchInput<float, 16>&) const;
-template BatchResult<double, 8> PolynomialEvaluator<double>::evaluate(
+template PolynomialBySensor<Batch<double, 8>> PolynomialEvaluator<double>::evaluateBySensor(
     const BatchInput<double, 8>&) const;
 
 }  // namespace etendue

@@ -10,14 +10,7 @@
 
 namespace etendue {
 
-constexpr int mostOutputs = 10;
-
-/// T is float or double.
-template <class T>
-struct PolynomialResult {
-    std::array<T, mostOutputs> values;
-    std::array<std::array<T, 4>, mostOutputs> jacobian;  // by s.x, s.y, p.x, p.y
-};
+constexpr int mostVectors = 2, mostOutputs = 10;
 
 /// `Lanes` numbers side by side.
 template <class T, int Lanes>
@@ -28,11 +21,22 @@ struct BatchInput {
     Batch<T, Lanes> sx, sy, px, py, wavelengthNm;
 };
 
-/// The derivatives are those of vectors by s alone, p held fixed; bySensor holds no others.
-template <class T, int Lanes>
-struct BatchResult {
-    std::array<Batch<T, Lanes>, mostOutputs> values;
-    std::array<std::array<Batch<T, Lanes>, 2>, mostOutputs> bySensor;
+/// Number is float, double or a Batch of them. Only the polynomial's own outputs are filled.
+template <class Number>
+using PolynomialValues = std::array<Number, mostOutputs>;
+
+/// Besides the values, the derivatives of the vectors' components by s.x and s.y, p held fixed.
+template <class Number>
+struct PolynomialBySensor {
+    PolynomialValues<Number> values;
+    std::array<std::array<Number, 2>, 2 * mostVectors> bySensor;
+};
+
+/// Besides the values, the derivatives of the vectors' components by s.x, s.y, p.x, p.y.
+template <class Number>
+struct PolynomialResult {
+    PolynomialValues<Number> values;
+    std::array<std::array<Number, 4>, 2 * mostVectors> jacobian;
 };
 
 /// How the inputs move what the axial basis is made of, as far as that depends on scaling alone.
@@ -50,14 +54,15 @@ struct AxialChain {
 template <class T>
 class PolynomialEvaluator {
 public:
-    /// Throws std::invalid_argument for more than mostOutputs outputs.
+    /// Throws std::invalid_argument for more than mostOutputs outputs or mostVectors vectors.
     explicit PolynomialEvaluator(const SparsePolynomial& polynomial);
 
-    /// With the Jacobian.
+    PolynomialValues<T> values(const PolynomialInput& input) const;
+    PolynomialBySensor<T> evaluateBySensor(const PolynomialInput& input) const;
     PolynomialResult<T> evaluate(const PolynomialInput& input) const;
     /// Lanes is 8 or 16. The axial basis only.
     template <int Lanes>
-    BatchResult<T, Lanes> evaluate(const BatchInput<T, Lanes>& input) const;
+    PolynomialBySensor<Batch<T, Lanes>> evaluateBySensor(const BatchInput<T, Lanes>& input) const;
 
     OutputCount outputs() const { return outputs_; }
 
@@ -69,7 +74,7 @@ private:
     };
 
     template <int Lanes, int Parts>
-    BatchResult<T, Lanes> evaluateParts(const BatchInput<T, Lanes>& input) const;
+    PolynomialBySensor<Batch<T, Lanes>> evaluateParts(const BatchInput<T, Lanes>& input) const;
 
     PolynomialBasis basis_;
     OutputCount outputs_;

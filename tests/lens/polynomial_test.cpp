@@ -113,7 +113,7 @@ TEST_CASE("PolynomialEvaluator: the Jacobian agrees with central differences") {
                 // of the size in scaled units, below 1e-9; rounding 1e-16/1e-3.
                 const Eigen::VectorXd difference =
                     (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
-                for (int o = 0; o < 5; ++o)
+                for (int o = 0; o < 4; ++o)
                     CHECK(std::abs(result.jacobian[static_cast<std::size_t>(o)]
                                                   [static_cast<std::size_t>(j)] -
                                    difference[o]) <= 1e-9 * size / (1e3 * h) * 10.0);
@@ -140,7 +140,7 @@ TEST_CASE_TEMPLATE("PolynomialEvaluator: a batch gives what single evaluations g
             batch.py[i] = static_cast<float>(input.p.y());
             batch.wavelengthNm[i] = static_cast<float>(input.wavelengthNm);
         }
-        const BatchResult<float, lanes> result = evaluator.evaluate<lanes>(batch);
+        const PolynomialBySensor<Batch<float, lanes>> result = evaluator.evaluateBySensor(batch);
         for (int i = 0; i < lanes; ++i) {
             const PolynomialInput& input = inputs[static_cast<std::size_t>(i)];
             const PolynomialResult<double> single = exact.evaluate(input);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "tools/lens_draw.h"
 #include "tools/lens_info.h"
 
 namespace etendue {
@@ -63,12 +64,34 @@ void addInfo(CLI::App& lens, Chosen& chosen) {
     runWhenChosen(info, chosen, command, runLensInfo);
 }
 
+void addDraw(CLI::App& lens, Chosen& chosen) {
+    const auto command = std::make_shared<LensDrawCommand>();
+    CLI::App* draw =
+        lens.add_subcommand("draw", "Draw the cross-section with exactly traced rays, as SVG");
+    addLens(draw, command->choice);
+    draw->add_option("-o,--output", command->output, "The picture")->required()->type_name("FILE");
+    draw->add_option("--fields", command->fields, "Beams, from the axis to the edge; default: 3")
+        ->check(CLI::Range(1, 6).description(""))
+        ->type_name("N");
+    draw->add_option("--rays", command->raysPerField, "Of each beam; default: 7")
+        ->check(CLI::Range(1, 100).description(""))
+        ->type_name("N");
+    draw->add_option("--wavelengths", command->wavelengthsNm, "In nm; default: the d line")
+        ->delimiter(',')
+        ->check(CLI::Range(shortestWavelengthNm, longestWavelengthNm).description(""))
+        ->type_name("LIST");
+    draw->add_flag("--by-wavelength", command->colourByWavelength,
+                   "Colour rays by their wavelength, not by their field");
+    addJson(draw, command->asJson);
+    runWhenChosen(draw, chosen, command, runLensDraw);
+}
+
 }  // namespace
 
 void addLensCommands(CLI::App& app, Chosen& chosen) {
     CLI::App* lens = app.add_subcommand("lens", "Look at a lens, draw it, fit polynomials to it");
     lens->require_subcommand(1);
-    for (const auto add : {addInfo}) add(*lens, chosen);
+    for (const auto add : {addInfo, addDraw}) add(*lens, chosen);
 }
 
 }  // namespace etendue

@@ -52,6 +52,7 @@ svg .faint{stroke:#9aa5b1}
 svg .rule{stroke:#7b8794;stroke-width:1}
 svg .grid{stroke:#e4e7eb;stroke-width:1}
 svg .thin{stroke-width:.8}
+svg .heavy{stroke-width:2.4}
 svg .dashed{stroke-dasharray:5 4}
 svg .glass{fill:#3f86c7;stroke:none}
 svg .metal{fill:#1f2933;stroke:none}

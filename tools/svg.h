@@ -13,7 +13,7 @@
 namespace etendue {
 
 /// Classes: ink, faint, rule, grid (lines); fill-ink, muted (texts); glass, metal, paper (areas);
-/// c0 … c5 (lines of a series), f0 … f5 (the same colours to fill); dashed, bold, thin.
+/// c0 … c5 (lines of a series), f0 … f5 (the same colours to fill); dashed, thin, heavy; bold.
 std::string_view svgStyle();
 constexpr int svgSeriesColours = 6;
 

@@ -1,36 +1,14 @@
 // The command as a user meets it: exit codes, messages and files.
 #include <doctest/doctest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <fstream>
 
 #include "tests/support/scenes.h"
+#include "tests/tools/command_outcome.h"
 
 using namespace etendue;
 
 namespace {
-
-struct Outcome {
-    int code;
-    std::string output;  // both streams
-};
-
-Outcome run(const std::string& arguments) {
-    FILE* pipe = popen((std::string(ETENDUE_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
-    REQUIRE(pipe);
-    Outcome outcome{};
-    std::array<char, 4096> buffer;
-    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
-        outcome.output.append(buffer.data(), n);
-    outcome.code = WEXITSTATUS(pclose(pipe));
-    return outcome;
-}
-
-bool contains(const std::string& text, const char* fragment) {
-    return text.find(fragment) != std::string::npos;
-}
 
 constexpr const char* smallScene =
     "[film]\nwidth = 16\nheight = 12\n[estimator]\nsamples = 2\n"

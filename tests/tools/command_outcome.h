@@ -1,0 +1,33 @@
+// The command run as a user runs it.
+#pragma once
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+namespace etendue {
+
+struct Outcome {
+    int code;
+    std::string output;  // both streams
+};
+
+inline Outcome run(const std::string& arguments) {
+    FILE* pipe = popen((std::string(ETENDUE_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
+    REQUIRE(pipe);
+    Outcome outcome{};
+    std::array<char, 4096> buffer;
+    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
+        outcome.output.append(buffer.data(), n);
+    outcome.code = WEXITSTATUS(pclose(pipe));
+    return outcome;
+}
+
+inline bool contains(const std::string& text, const char* fragment) {
+    return text.find(fragment) != std::string::npos;
+}
+
+}  // namespace etendue

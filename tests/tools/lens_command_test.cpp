@@ -1,0 +1,61 @@
+// The commands about lenses as a user meets them.
+#include "tests/lens/prescriptions.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/tools/command_outcome.h"
+
+using namespace etendue;
+
+TEST_CASE("Lens command: info tells what the header of a lens states") {
+    const Outcome outcome = run("lens info tessar-100mm");
+    CHECK(outcome.code == 0);
+    CHECK(contains(outcome.output, "Tessar"));
+    CHECK(contains(outcome.output, "US patent 2,854,889"));
+    CHECK(contains(outcome.output, "99.996 mm"));
+    CHECK(contains(outcome.output, "79.809 mm"));
+    CHECK(contains(outcome.output, "1.69100"));
+    const Outcome json =
+        run("lens info " + lensFile("anamorphic-80x90mm.toml").string() + " --json");
+    CHECK(json.code == 0);
+    CHECK(contains(json.output, "\"symmetry\": \"anamorphic\""));
+    CHECK(contains(json.output, "\"focal_length_mm\": 80.69"));
+    CHECK(contains(json.output, "\"focal_length_mm\": 90.59"));
+}
+
+TEST_CASE("Lens command: a zoom position is chosen by its name") {
+    CHECK(contains(run("lens info zoom-57-143mm --zoom '143 mm'").output, "143.076 mm"));
+    const Outcome wrong = run("lens info zoom-57-143mm --zoom '100 mm'");
+    CHECK(wrong.code == 65);
+    CHECK(contains(wrong.output, "57 mm"));
+}
+
+TEST_CASE(
+    "Lens command: wrong usage is 64, a bad lens 65, a missing one 66 with the nearest name") {
+    const TemporaryFolder folder;
+    CHECK(run("lens").code == 64);
+    CHECK(run("lens info").code == 64);
+    CHECK(run("lens info tessar-100mm --f-number 0.3").code == 64);
+    CHECK(run("lens info tessar-100mm --focus 0.1").code == 64);
+    const std::string bad = folder.write("bad.toml", "name = \"x\"\nsurfce = []\n").string();
+    const Outcome badOutcome = run("lens info " + bad);
+    CHECK(badOutcome.code == 65);
+    CHECK(contains(badOutcome.output, "bad.toml"));
+    const Outcome missing = run("lens info tesar-100mm");
+    CHECK(missing.code == 66);
+    CHECK(contains(missing.output, "tessar-100mm"));
+}
+
+TEST_CASE("Lens command: draw writes a whole picture with every field") {
+    const TemporaryFolder folder;
+    const std::string svg = (folder.path() / "lens.svg").string();
+    const Outcome outcome = run("lens draw fisheye-181-10mm --fields 4 --rays 3 --json -o " + svg);
+    CHECK(outcome.code == 0);
+    CHECK(contains(outcome.output, "\"rays\": 3"));
+    CHECK_FALSE(contains(outcome.output, "\"rays\": 0"));
+    const std::string picture = readFile(svg);
+    CHECK(contains(picture, "Fisheye with aspheres"));
+    for (const char* colour : {"\"c0 thin\"", "\"c1 thin\"", "\"c2 thin\"", "\"c3 thin\""})
+        CHECK(contains(picture, colour));
+    CHECK(picture.ends_with("</svg>\n"));
+    CHECK(run("lens draw tessar-100mm -o " + (folder.path() / "no/x.svg").string()).code == 66);
+    CHECK(run("lens draw tessar-100mm --wavelengths 200 -o " + svg).code == 64);
+}

@@ -21,9 +21,10 @@ std::optional<ExitRay> IdealLens::trace(SensorPoint sensor, AperturePoint apertu
     ray.direction << slope * inverseLength, inverseLength;
     ray.originBySensor.setZero();
     // ∂slope/∂s = −1/v; normalising the direction takes away what would lengthen it.
-    ray.directionBySensor = ray.direction * ray.direction.head<2>().transpose();
-    ray.directionBySensor.topRows<2>() -= Eigen::Matrix2d::Identity();
-    ray.directionBySensor *= inverseLength * perMm;
+    const double x = ray.direction.x(), y = ray.direction.y(), k = inverseLength * perMm;
+    ray.directionBySensor << (x * x - 1.0) * k, x * y * k,  //
+        x * y * k, (y * y - 1.0) * k,                       //
+        x * k * inverseLength, y * k * inverseLength;
     ray.throughput = throughput;
     return ray;
 }

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* formatName = "etendue lens fit 1";
+constexpr const char* formatName = "etendue lens fit 2";
 constexpr std::uintmax_t largestFileBytes = 64u << 20;
 
 struct Refusal : std::runtime_error {
@@ -202,6 +202,10 @@ Json jsonOf(const LensFit& fit) {
               {"squared_heights", jsonOf(fit.clip.squaredHeights)},
               {"wrongly_accepted", fit.clipErrors.wronglyAccepted},
               {"wrongly_blocked", fit.clipErrors.wronglyBlocked}}},
+            {"start",
+             {{"sensor", jsonOf(fit.start.sensor)},
+              {"widest_field", fit.start.widestField},
+              {"error_mm", fit.start.errorMm}}},
             {"training", jsonOf(fit.training)},
             {"errors", jsonOf(fit.errors)}};
 }
@@ -220,6 +224,9 @@ LensFit fitFrom(const Json& json) {
         throw Refusal("clipping surfaces and polynomials differ in number");
     fit.clipErrors = {clip.at("wrongly_accepted").get<double>(),
                       clip.at("wrongly_blocked").get<double>()};
+    const Json& start = json.at("start");
+    fit.start = {polynomialFrom(start.at("sensor")), start.at("widest_field").get<double>(),
+                 start.at("error_mm").get<double>()};
     fit.training = countsFrom(json.at("training"));
     fit.errors = errorsFrom(json.at("errors"));
     return fit;

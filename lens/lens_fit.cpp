@@ -140,6 +140,7 @@ LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
                       candidateTerms(settings.basis, settings.degree, apertureOutputs), scaling,
                       inputs, apertures, apertureTolerances(apertures), options);
     }
+    fit.start = fitConnectStart(training.rays, !isAnamorphic(prescription));
     fit.clip = fitClip(lens, domain, settings.basis, settings.clip);
     fit.errors = measureErrors(fit, lens, 10'000, heldOutSeed);
     fit.clipErrors = measureClip(fit.clip, lens, domain, 20'000, heldOutSeed);

@@ -1,6 +1,7 @@
 // LensFit: a lens as polynomials, fitted to its exact trace (docs/fitting).
 #pragma once
 
+#include "lens/connect_start.h"
 #include "lens/fit_rays.h"
 #include "lens/lens_clip.h"
 #include "lens/polynomial_basis.h"
@@ -49,6 +50,7 @@ struct LensFit {
     SparsePolynomial exit;      // vectors: pupil position (mm) and direction; scalar
     SparsePolynomial aperture;  // sensorState only; vectors: aperture point (mm), slope
     ClipFit clip;               // in either form of (s, a, λ)
+    ConnectStart start;         // likewise
     RayCounts training;
     FitErrors errors;
     ClipErrors clipErrors;

@@ -31,15 +31,25 @@ std::optional<PupilState<T>> PupilSphere::state(const LensRay<T>& ray) const {
                          dot(ray.direction, frame.y)};
 }
 
+template <class T>
+std::optional<LensRay<T>> PupilSphere::rayOf(const PupilState<T>& state) const {
+    using std::sqrt;
+    const T squared = state.x * state.x + state.y * state.y;
+    const T along = 1.0 - state.directionX * state.directionX - state.directionY * state.directionY;
+    if (!(valueOf(conicRadicand(shape_, squared)) > 0.0 && valueOf(along) >= 0.0)) return {};
+    const Vector3<T> point{state.x, state.y, sag(shape_, squared)};
+    const Frame<T> frame = frameAt(point);
+    return LensRay<T>{point, frame.x * state.directionX + frame.y * state.directionY +
+                                 frame.normal * sqrt(along)};
+}
+
 std::optional<LensRay<double>> PupilSphere::ray(const PupilState<double>& state) const {
-    const double squared = state.x * state.x + state.y * state.y;
-    const double along =
-        1.0 - state.directionX * state.directionX - state.directionY * state.directionY;
-    if (!(conicRadicand(shape_, squared) > 0.0 && along >= 0.0)) return {};
-    const Vector3<double> point{state.x, state.y, sag(shape_, squared)};
-    const Frame<double> frame = frameAt(point);
-    return LensRay<double>{point, frame.x * state.directionX + frame.y * state.directionY +
-                                      frame.normal * std::sqrt(along)};
+    return rayOf(state);
+}
+
+template <int N>
+std::optional<LensRay<Dual<N>>> PupilSphere::ray(const PupilState<Dual<N>>& state) const {
+    return rayOf(state);
 }
 
 double PupilSphere::normalZ(double x, double y) const {
@@ -49,6 +59,7 @@ double PupilSphere::normalZ(double x, double y) const {
 template std::optional<PupilState<double>> PupilSphere::state(const LensRay<double>&) const;
 template std::optional<PupilState<Dual<2>>> PupilSphere::state(const LensRay<Dual<2>>&) const;
 template std::optional<PupilState<Dual<4>>> PupilSphere::state(const LensRay<Dual<4>>&) const;
+template std::optional<LensRay<Dual<2>>> PupilSphere::ray(const PupilState<Dual<2>>&) const;
 
 double etendueDeterminant(const Eigen::Matrix4d& pupilBySensor, const SensorState& sensor,
                           const PupilState<double>& pupil, const PupilSphere& sphere) {

@@ -53,7 +53,11 @@ public:
     std::optional<PupilState<T>> state(const LensRay<T>& ray) const;
     /// The inverse. Empty when the point is beyond the equator or the direction longer than 1.
     std::optional<LensRay<double>> ray(const PupilState<double>& state) const;
+    template <int N>
+    std::optional<LensRay<Dual<N>>> ray(const PupilState<Dual<N>>& state) const;
 
+    /// 1/mm; positive if the centre lies toward the scene.
+    double curvature() const { return shape_.curvature; }
     /// z of the unit normal above (x, y): a piece of the sphere is 1/normalZ of its projection.
     double normalZ(double x, double y) const;
 
@@ -65,6 +69,8 @@ private:
     };
     template <class T>
     Frame<T> frameAt(const Vector3<T>& point) const;
+    template <class T>
+    std::optional<LensRay<T>> rayOf(const PupilState<T>& state) const;
 
     SurfaceShape shape_;
 };

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,35 +11,53 @@
 
 namespace etendue {
 
-/// Two columns across `direction`, right-handed about it.
-inline Eigen::Matrix<double, 3, 2> frameAcross(const Eigen::Vector3d& direction) {
-    Eigen::Matrix<double, 3, 2> frame;
-    frame.col(0) = direction.unitOrthogonal();
-    frame.col(1) = direction.cross(frame.col(0));
-    return frame;
+/// Solid angle that the ray's direction sweeps per area of the sensor, 1/mm²; negative where the
+/// lens' map has turned over.
+inline double turning(const ExitRay& ray) {
+    const Eigen::Vector3d byX = ray.directionBySensor.col(0), byY = ray.directionBySensor.col(1);
+    return ray.direction.dot(byX.cross(byY));
 }
 
-/// By how much a ray's direction misses a target, seen from where the ray leaves the lens.
+/// How a ray misses a target, seen from where it leaves the lens.
 struct Miss {
-    Eigen::Matrix<double, 3, 2> frame;  // across the ray
-    Eigen::Vector2d radians;            // in it, from the ray's direction to the target's
-    double distanceMm;
+    double radians;
+    Eigen::Vector2d sensorStep;  // mm; takes the miss away to first order
 };
 
 inline Miss missOf(const ExitRay& ray, const Eigen::Vector3d& target) {
-    Miss miss;
-    const Eigen::Vector3d toTarget = target - ray.origin;
-    miss.distanceMm = toTarget.norm();
-    miss.frame = frameAcross(ray.direction);
-    const Eigen::Vector3d wanted = toTarget / miss.distanceMm;
-    const Eigen::Vector2d across = miss.frame.transpose() * wanted;
-    const double sine = across.norm(), cosine = wanted.dot(ray.direction);
-    if (sine > 0.0)
-        miss.radians = across * (std::atan2(sine, cosine) / sine);
-    else  // straight ahead or straight behind
-        miss.radians << (cosine > 0.0 ? 0.0 : std::numbers::pi), 0.0;
+    const Eigen::Vector3d toTarget = target - ray.origin, &d = ray.direction;
+    const double perDistance = 1.0 / toTarget.norm();
+    const double cosine = toTarget.dot(d) * perDistance;
+    Eigen::Vector3d turn = toTarget * perDistance - cosine * d;  // from d toward the target
+    const double sine = turn.norm();
+    Miss miss{};
+    if (cosine > 0.95) {  // the first terms of the arc sine, good to 1e-5 here
+        miss.radians = sine * (1.0 + sine * sine * (1.0 / 6.0 + sine * sine * (3.0 / 40.0)));
+        turn *= 1.0 + sine * sine / 6.0;
+    } else if (sine > 0.0) {
+        miss.radians = std::atan2(sine, cosine);
+        turn *= miss.radians / sine;
+    } else {  // straight behind
+        miss.radians = std::numbers::pi;
+        turn = miss.radians * d.unitOrthogonal();
+    }
+    // The directions to the target by s, across d: what a step turns them by is solved for with
+    // Cramer's rule, d·(u × v) being the determinant of u and v across d.
+    const Eigen::Vector3d byX =
+        ray.directionBySensor.col(0) + perDistance * ray.originBySensor.col(0);
+    const Eigen::Vector3d byY =
+        ray.directionBySensor.col(1) + perDistance * ray.originBySensor.col(1);
+    const Eigen::Vector3d across = turn.cross(d);
+    miss.sensorStep << across.dot(-byY), across.dot(byX);
+    miss.sensorStep /= d.dot(byX.cross(byY));
     return miss;
 }
+
+/// The end of a search: the sensor point, and the exit ray of one within the tolerance of it.
+struct Aimed {
+    Eigen::Vector2d sensor;
+    ExitRay ray;
+};
 
 /// Newton's method on the direction in which rays leave. `Exit`, called with a sensor point and the
 /// share of the aperture point to go through, gives an exit ray, rims ignored, or nothing.
@@ -50,34 +67,47 @@ public:
     TargetSolver(const Exit& exit, double focalLengthMm)
         : exit_(exit), longestStepMm_(0.5 * focalLengthMm) {}
 
-    /// From the sensor point `s`. Steps are halved until the miss shrinks.
-    std::optional<Eigen::Vector2d> newton(const Eigen::Vector3d& target, Eigen::Vector2d s,
-                                          double apertureShare = 1.0) const {
-        std::optional<ExitRay> at = exit_(s, apertureShare);
-        constexpr int mostSteps = 12, mostHalvings = 4;
-        for (int i = 0; at && i < mostSteps; ++i) {
-            const Miss miss = missOf(*at, target);
-            Eigen::Vector2d step = stepFor(*at, miss);
-            if (!step.allFinite()) return {};
-            // One more step squares what is missing: far below rounding.
-            if (miss.radians.norm() <= 1e-8) return s + step;
-            if (step.norm() > longestStepMm_) step *= longestStepMm_ / step.norm();
-            std::optional<ExitRay> next;
-            double share = 1.0;
-            for (int halving = 0; halving < mostHalvings; ++halving, share *= 0.5) {
-                next = exit_(s + share * step, apertureShare);
-                if (next && missOf(*next, target).radians.norm() < miss.radians.norm()) break;
-                next.reset();
-            }
-            s += share * step;
-            at = next;
+    static constexpr double toleranceRadians = 1e-8;
+
+    /// From the sensor point `s`, or where no ray leaves there, from one nearer the axis: rays that
+    /// graze the first surface end the field abruptly. Steps are halved until the miss shrinks.
+    std::optional<Aimed> newton(const Eigen::Vector3d& target, Eigen::Vector2d s,
+                                double apertureShare = 1.0) {
+        constexpr int mostRetreats = 5;
+        std::optional<ExitRay> ray = exit_(s, apertureShare);
+        for (int i = 0; !ray && i < mostRetreats; ++i) {
+            s *= 0.98;
+            ray = exit_(s, apertureShare);
         }
-        return {};
+        if (!ray) return {};
+        Miss miss = missOf(*ray, target);
+        constexpr int mostSteps = 12, mostHalvings = 4;
+        for (int i = 0; !(miss.radians <= toleranceRadians); ++i) {
+            if (i == mostSteps || !miss.sensorStep.allFinite()) return {};
+            ++steps_;
+            const double length = miss.sensorStep.norm();
+            double share = length > longestStepMm_ ? longestStepMm_ / length : 1.0;
+            std::optional<ExitRay> next;
+            Miss nextMiss{};
+            int halvings = 0;
+            for (; halvings < mostHalvings; ++halvings, share *= 0.5) {
+                next = exit_(s + share * miss.sensorStep, apertureShare);
+                if (!next) continue;
+                nextMiss = missOf(*next, target);
+                if (nextMiss.radians < miss.radians) break;
+            }
+            if (halvings == mostHalvings) return {};
+            s += share * miss.sensorStep;
+            ray = next;
+            miss = nextMiss;
+        }
+        // One more step squares what is missing: far below rounding.
+        return Aimed{s + miss.sensorStep, *ray};
     }
 
     /// From the ray along the axis outward: aperture point and target are led from there to their
     /// places, the target on a circle about the first surface.
-    std::optional<Eigen::Vector2d> follow(const Eigen::Vector3d& target) const {
+    std::optional<Aimed> follow(const Eigen::Vector3d& target) {
         const std::optional<ExitRay> axis = exit_(Eigen::Vector2d::Zero(), 0.0);
         if (!axis) return {};
         const Eigen::Vector3d toTarget = target - axis->origin;
@@ -95,8 +125,8 @@ public:
             const double t = std::min(1.0, reached + stride);
             if (const auto found = newton(waypoint(t), s + (t - reached) * change, t)) {
                 if (t == 1.0) return found;
-                change = (*found - s) / (t - reached);
-                s = *found;
+                change = (found->sensor - s) / (t - reached);
+                s = found->sensor;
                 reached = t;
             } else {
                 stride *= 0.5;
@@ -105,16 +135,13 @@ public:
         return {};
     }
 
-private:
-    /// To first order, moving the sensor point by it takes the miss away.
-    static Eigen::Vector2d stepFor(const ExitRay& ray, const Miss& miss) {
-        const Eigen::Matrix2d turn =
-            miss.frame.transpose() * (ray.directionBySensor + ray.originBySensor / miss.distanceMm);
-        return turn.inverse() * miss.radians;
-    }
+    /// Of Newton's method, so far.
+    int steps() const { return steps_; }
 
+private:
     const Exit& exit_;
     double longestStepMm_;  // beyond which a lens does not turn rays evenly
+    int steps_ = 0;
 };
 
 }  // namespace etendue

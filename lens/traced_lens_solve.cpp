@@ -13,6 +13,18 @@ namespace {
 
 constexpr auto ignore = [](auto...) {};
 
+std::optional<StopHit> stopHit(const MonochromaticSystem& lens, SensorPoint sensor,
+                               const Eigen::Vector2d& q, double sensorZMm) {
+    using D = Dual<2>;
+    const PlaneState<D> state{D(sensor.mm.x()), D(sensor.mm.y()), D::variable(q.x(), 0),
+                              D::variable(q.y(), 1)};
+    LensRay<D> ray = rayOf(state, sensorZMm);
+    const std::size_t stop = lens.system.stop, end = lens.system.surfaces.size();
+    const Passage passage = carryToScene<TraceMode::geometry>(lens, stop, end, ray, ignore);
+    if (passage.status != TraceStatus::passed) return {};
+    return StopHit{toEigen(valueOf(ray.origin)).head<2>(), partials(ray.origin).topRows<2>()};
+}
+
 /// A ray as far as the stop, differentiated by (s, q).
 struct RearRay {
     LensRay<Dual<4>> ray;  // behind the stop's plane
@@ -56,25 +68,17 @@ LensRay<Dual<2>> throughFixedAperture(const RearRay& rear, AperturePoint apertur
             {held(x), held(y), held(z)}};
 }
 
-Eigen::Matrix<double, 3, 2> partials(const Vector3<Dual<2>>& vector) {
-    Eigen::Matrix<double, 3, 2> result;
-    result << vector.x.partials[0], vector.x.partials[1],  //
-        vector.y.partials[0], vector.y.partials[1],        //
-        vector.z.partials[0], vector.z.partials[1];
-    return result;
-}
-
-/// Solid angle swept per area of the sensor, 1/mm²; negative where the map has turned over.
-double turning(const ExitRay& ray) {
-    return (frameAcross(ray.direction).transpose() * ray.directionBySensor).determinant();
-}
-
 }  // namespace
 
 std::optional<Eigen::Vector2d> MonochromaticLens::slopeThrough(SensorPoint sensor,
                                                                AperturePoint aperture) const {
     const MonochromaticSystem view = system();
-    return SlopeSolver(view, lens_->paraxialStopMap(), lens_->sensorZMm()).solve(sensor, aperture);
+    const std::size_t stop = view.system.stop;
+    const StopMap& paraxial = lens_->paraxialStopMap();
+    return solveSlope(
+        [&](const Eigen::Vector2d& q) { return stopHit(view, sensor, q, lens_->sensorZMm()); },
+        paraxialSlope(paraxial, sensor, aperture), aperture,
+        view.system.surfaces[stop].semiApertureMm);
 }
 
 template <TraceMode mode>
@@ -118,13 +122,11 @@ std::optional<SensorPoint> MonochromaticLens::connect(const Eigen::Vector3d& tar
     const auto exit = [&](const Eigen::Vector2d& s, double apertureShare) {
         return exitRay<TraceMode::geometry>({s}, {apertureShare * aperture.mm});
     };
-    const auto passing = [&](const std::optional<Eigen::Vector2d>& s) {
-        constexpr double toleranceRadians = 1e-9;
-        const std::optional<ExitRay> ray = s ? trace({*s}, aperture) : std::nullopt;
-        const bool meets = ray && missOf(*ray, targetMm).radians.norm() <= toleranceRadians;
-        return meets ? std::optional(SensorPoint{*s}) : std::nullopt;
+    const auto passing = [&](const std::optional<Aimed>& end) {
+        return end && trace({end->sensor}, aperture) ? std::optional(SensorPoint{end->sensor})
+                                                     : std::nullopt;
     };
-    const TargetSolver solver(exit, lens_->focalLengthMm());
+    TargetSolver solver(exit, lens_->focalLengthMm());
     if (const auto found = passing(solver.newton(targetMm, {0.0, 0.0}))) return found;
     return passing(solver.follow(targetMm));
 }

@@ -42,6 +42,15 @@ Vector3<double> valueOf(const Vector3<T>& a) {
     return {valueOf(a.x), valueOf(a.y), valueOf(a.z)};
 }
 
+/// Rows x, y, z.
+inline Eigen::Matrix<double, 3, 2> partials(const Vector3<Dual<2>>& a) {
+    Eigen::Matrix<double, 3, 2> result;
+    result << a.x.partials[0], a.x.partials[1],  //
+        a.y.partials[0], a.y.partials[1],        //
+        a.z.partials[0], a.z.partials[1];
+    return result;
+}
+
 inline Eigen::Vector3d toEigen(const Vector3<double>& a) { return {a.x, a.y, a.z}; }
 inline Vector3<double> fromEigen(const Eigen::Vector3d& a) { return {a.x(), a.y(), a.z()}; }
 

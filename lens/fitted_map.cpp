@@ -1,0 +1,91 @@
+#include "lens/fitted_map.h"
+
+namespace etendue {
+
+namespace {
+
+using PupilDerivatives = Eigen::Matrix<double, 4, 2>;
+
+/// ∂(x, y, directionX, directionY) by the inputs `column` and `column + 1`, or the stop's x and y.
+template <int Rows>
+Eigen::Matrix<double, Rows, 2> block(const PolynomialResult<double>& result, std::size_t column) {
+    Eigen::Matrix<double, Rows, 2> derivatives;
+    for (std::size_t row = 0; row < Rows; ++row)
+        derivatives.row(static_cast<Eigen::Index>(row)) << result.jacobian[row][column],
+            result.jacobian[row][column + 1];
+    return derivatives;
+}
+
+/// From the values of the exit polynomials and the derivatives of the pupil state by s.
+std::optional<ExitRay> exitRayOf(const PupilSphere& sphere, const PolynomialValues<double>& values,
+                                 const PupilDerivatives& bySensor, double throughput) {
+    const auto component = [&](Eigen::Index row) {
+        Dual<2> result(values[static_cast<std::size_t>(row)]);
+        result.partials = {bySensor(row, 0), bySensor(row, 1)};
+        return result;
+    };
+    const auto ray =
+        sphere.ray(PupilState<Dual<2>>{component(0), component(1), component(2), component(3)});
+    if (!ray) return {};
+    return ExitRay{toEigen(valueOf(ray->origin)), toEigen(valueOf(ray->direction)),
+                   partials(ray->origin), partials(ray->direction), throughput};
+}
+
+}  // namespace
+
+FittedMap::FittedMap(const Prescription& prescription, const LensFit& fit)
+    : sphere_(OpticalSystem(prescription)), exit_(fit.exit) {
+    const OpticalSystem system(prescription);
+    paraxialStopMap_ = stopMap(system, fit.domain.sensorDistanceMm);
+    stopRadiusMm_ = system.surfaces[system.stop].semiApertureMm;
+    if (fit.settings.form == FitForm::sensorState) apertureMap_.emplace(fit.aperture);
+}
+
+std::optional<ExitRay> FittedMap::exitRay(SensorPoint sensor, AperturePoint aperture,
+                                          double wavelengthNm) const {
+    const std::optional<ExitRay> ray = apertureMap_
+                                           ? sensorStateRay(sensor, aperture, wavelengthNm)
+                                           : twoPointRay({sensor.mm, aperture.mm, wavelengthNm});
+    if (!ray || !(ray->throughput > 0.0)) return {};
+    return ray;
+}
+
+std::optional<ExitRay> FittedMap::twoPointRay(const PolynomialInput& input) const {
+    const PolynomialBySensor<double> at = exit_.evaluateBySensor(input);
+    PupilDerivatives bySensor;
+    for (std::size_t row = 0; row < 4; ++row)
+        bySensor.row(static_cast<Eigen::Index>(row)) << at.bySensor[row][0], at.bySensor[row][1];
+    return exitRayOf(sphere_, at.values, bySensor, at.values[4]);
+}
+
+std::optional<StateRay> FittedMap::stateRay(SensorPoint sensor, const Eigen::Vector2d& slope,
+                                            double wavelengthNm) const {
+    const PolynomialInput input{sensor.mm, slope, wavelengthNm};
+    const PolynomialResult<double> stop = apertureMap_->evaluate(input), at = exit_.evaluate(input);
+    const auto exit = exitRayOf(sphere_, at.values, block<4>(at, 0), at.values[4]);
+    if (!exit) return {};
+    return StateRay{{{stop.values[0], stop.values[1]}, block<2>(stop, 2)}, *exit};
+}
+
+std::optional<ExitRay> FittedMap::sensorStateRay(SensorPoint sensor, AperturePoint aperture,
+                                                 double wavelengthNm) const {
+    const auto hit = [&](const Eigen::Vector2d& slope) {
+        const auto at = apertureMap_->evaluate({sensor.mm, slope, wavelengthNm});
+        return std::optional(StopHit{{at.values[0], at.values[1]}, block<2>(at, 2)});
+    };
+    const auto slope =
+        solveSlope(hit, paraxialSlope(paraxialStopMap_, sensor, aperture), aperture, stopRadiusMm_);
+    if (!slope) return {};
+    const PolynomialInput input{sensor.mm, *slope, wavelengthNm};
+    const PolynomialResult<double> stop = apertureMap_->evaluate(input), at = exit_.evaluate(input);
+    const Eigen::Matrix2d bySlope = block<2>(stop, 2);
+    const double determinant = bySlope.determinant();
+    const Eigen::Vector2d& paraxial = paraxialStopMap_.bySlope;
+    if (!(determinant * paraxial.x() * paraxial.y() > 0.0)) return {};
+    const Eigen::Matrix2d k = -bySlope.inverse() * block<2>(stop, 0);  // ∂q/∂s at fixed a
+    const double cosSquared = 1.0 / (1.0 + slope->squaredNorm());
+    const double j = cosSquared * cosSquared / std::abs(determinant);
+    return exitRayOf(sphere_, at.values, block<4>(at, 0) + block<4>(at, 2) * k, j * at.values[4]);
+}
+
+}  // namespace etendue

@@ -1,0 +1,45 @@
+// FittedMap: the map E(s, a, λ) → exit ray of a fit, in either form of FitForm. It answers wherever
+// its polynomials give a ray; domain and rims are for its user to mind.
+#pragma once
+
+#include "lens/lens_fit.h"
+#include "lens/polynomial.h"
+#include "lens/slope_solver.h"
+
+namespace etendue {
+
+/// Where the ray of a sensor state crosses the stop, and how it leaves.
+struct StateRay {
+    StopHit stop;
+    ExitRay exit;  // derivatives at fixed slope; throughput is τ
+};
+
+class FittedMap {
+public:
+    /// The fit is of that prescription.
+    FittedMap(const Prescription& prescription, const LensFit& fit);
+
+    /// Empty where the polynomials give no ray, no light, or no slope that leads to the aperture
+    /// point; in the sensor-state form also where det ∂a/∂q has changed its sign.
+    std::optional<ExitRay> exitRay(SensorPoint sensor, AperturePoint aperture,
+                                   double wavelengthNm) const;
+
+    /// The sensor-state form's own question. Empty where the polynomials give no ray.
+    std::optional<StateRay> stateRay(SensorPoint sensor, const Eigen::Vector2d& slope,
+                                     double wavelengthNm) const;
+
+    FitForm form() const { return apertureMap_ ? FitForm::sensorState : FitForm::twoPoint; }
+
+private:
+    std::optional<ExitRay> twoPointRay(const PolynomialInput& input) const;
+    std::optional<ExitRay> sensorStateRay(SensorPoint sensor, AperturePoint aperture,
+                                          double wavelengthNm) const;
+
+    PupilSphere sphere_;
+    PolynomialEvaluator<double> exit_;
+    std::optional<PolynomialEvaluator<double>> apertureMap_;  // sensorState only
+    StopMap paraxialStopMap_;
+    double stopRadiusMm_;
+};
+
+}  // namespace etendue

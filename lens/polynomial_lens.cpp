@@ -1,0 +1,127 @@
+#include "lens/polynomial_lens.h"
+
+#include <stdexcept>
+
+#include "lens/target_solver.h"
+#include "lens/two_step_newton.h"
+
+namespace etendue {
+
+PolynomialLens::PolynomialLens(const Prescription& prescription, const LensFit& fit,
+                               const Aperture& aperture)
+    : map_(prescription, fit),
+      domain_(fit.domain),
+      aperture_(aperture),
+      squaredHeights_(fit.clip.squaredHeights),
+      rims_(fit.clip.surfaces.size()),
+      start_(fit.start.sensor),
+      widestField_(fit.start.widestField) {
+    if (fit.prescriptionHash != contentHash(prescription))
+        throw std::invalid_argument("polynomial lens: the fit is of another prescription");
+    constexpr double rounding = 1.0 + 1e-12;
+    if (aperture.radiusMm() > fit.domain.apertureRadiusMm * rounding)
+        throw std::invalid_argument("polynomial lens: the aperture is wider than the fit's domain");
+    const OpticalSystem system(prescription);
+    const ParaxialData data = paraxialData(system);
+    focalLengthMm_ = 0.5 * (data.x.focalLengthMm + data.y.focalLengthMm);
+    entrancePupilZMm_ = 0.5 * (data.x.entrancePupilZMm + data.y.entrancePupilZMm);
+    entrancePupilPerStop_ << data.x.entrancePupilPerStop, data.y.entrancePupilPerStop;
+    pupilWanderMm_ = system.surfaces.front().semiApertureMm + std::abs(entrancePupilZMm_);
+}
+
+std::optional<ExitRay> PolynomialLens::trace(SensorPoint sensor, AperturePoint aperture,
+                                             double wavelengthNm) const {
+    if (!aperture_.contains(aperture.mm)) return {};
+    // Before any polynomial is asked, which outside the domain could answer anything.
+    if (!domain_.contains(sensor, aperture, wavelengthNm)) return {};
+    const std::optional<ExitRay> ray = map_.exitRay(sensor, aperture, wavelengthNm);
+    if (!ray || statusOf(sensor, *ray, aperture, wavelengthNm) != ConnectStatus::found) return {};
+    return ray;
+}
+
+ConnectStatus PolynomialLens::statusOf(SensorPoint sensor, const ExitRay& ray,
+                                       AperturePoint aperture, double wavelengthNm) const {
+    if (!domain_.contains(sensor, aperture, wavelengthNm)) return ConnectStatus::outOfField;
+    if (!(turning(ray) > 0.0)) return ConnectStatus::blocked;
+    const PolynomialValues<double> heights =
+        squaredHeights_.values({sensor.mm, aperture.mm, wavelengthNm});
+    return passesRims({heights.data(), rims_}) ? ConnectStatus::found : ConnectStatus::blocked;
+}
+
+AperturePoint PolynomialLens::sampleAperture(Eigen::Vector2d u) const {
+    return {aperture_.sample(u)};
+}
+
+std::optional<SensorPoint> PolynomialLens::connect(const Eigen::Vector3d& targetMm,
+                                                   AperturePoint aperture,
+                                                   double wavelengthNm) const {
+    return solve(targetMm, aperture, wavelengthNm).sensor;
+}
+
+Connection PolynomialLens::solve(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                                 double wavelengthNm, ConnectMethod method) const {
+    if (!targetMm.allFinite() || !aperture_.contains(aperture.mm) ||
+        !domain_.contains({{0.0, 0.0}}, aperture, wavelengthNm))
+        return {ConnectStatus::outOfField, {}, 0};
+    return method == ConnectMethod::newton ? solveByNewton(targetMm, aperture, wavelengthNm)
+                                           : solveByTwoSteps(targetMm, aperture, wavelengthNm);
+}
+
+std::optional<Eigen::Vector2d> PolynomialLens::firstGuess(const Eigen::Vector3d& target,
+                                                          AperturePoint aperture,
+                                                          double wavelengthNm) const {
+    Eigen::Vector3d pupil;
+    pupil << aperture.mm.cwiseProduct(entrancePupilPerStop_), entrancePupilZMm_;
+    const Eigen::Vector3d toTarget = target - pupil;
+    const double distance = toTarget.norm();
+    const Eigen::Vector2d field = fieldCoordinates(toTarget / distance);
+    if (!(field.norm() <= widestField_ + pupilWanderMm_ / distance)) return {};
+    const PolynomialValues<double> guess = start_.values({field, aperture.mm, wavelengthNm});
+    return Eigen::Vector2d(guess[0], guess[1])
+        .cwiseMax(-domain_.sensorHalfSizeMm)
+        .cwiseMin(domain_.sensorHalfSizeMm);
+}
+
+Connection PolynomialLens::solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture,
+                                         double wavelengthNm) const {
+    const std::optional<Eigen::Vector2d> guess = firstGuess(target, aperture, wavelengthNm);
+    if (!guess) return {ConnectStatus::outOfField, {}, 0};
+    const auto exit = [&](const Eigen::Vector2d& s,
+                          double apertureShare) -> std::optional<ExitRay> {
+        // A little beyond the domain, for searches to overshoot; far beyond it powers overflow.
+        constexpr double margin = 1.2;
+        if (!(s.cwiseAbs().array() <= margin * domain_.sensorHalfSizeMm.array()).all()) return {};
+        return map_.exitRay({s}, {apertureShare * aperture.mm}, wavelengthNm);
+    };
+    TargetSolver solver(exit, focalLengthMm_);
+    std::optional<Aimed> end = solver.newton(target, *guess);
+    if (!end) end = solver.follow(target);
+    Connection connection{ConnectStatus::unsolved, {}, solver.steps()};
+    if (!end) return connection;
+    connection.status = statusOf({end->sensor}, end->ray, aperture, wavelengthNm);
+    if (connection.status == ConnectStatus::found) connection.sensor = SensorPoint{end->sensor};
+    return connection;
+}
+
+Connection PolynomialLens::solveByTwoSteps(const Eigen::Vector3d& target, AperturePoint aperture,
+                                           double wavelengthNm) const {
+    const auto stateRay = [&](SensorPoint s, const Eigen::Vector2d& q) -> std::optional<StateRay> {
+        if (map_.form() == FitForm::sensorState) return map_.stateRay(s, q, wavelengthNm);
+        // At a fixed aperture point nothing is left to do for the slope.
+        const auto exit = map_.exitRay(s, aperture, wavelengthNm);
+        if (!exit) return {};
+        return StateRay{{aperture.mm, Eigen::Matrix2d::Identity()}, *exit};
+    };
+    const TwoStepResult end = twoStepNewton(stateRay, target, aperture, domain_.apertureRadiusMm);
+    Connection connection{ConnectStatus::unsolved, {}, end.iterations};
+    if (!end.sensor) return connection;
+    if (trace(*end.sensor, aperture, wavelengthNm)) {
+        connection.status = ConnectStatus::found;
+        connection.sensor = end.sensor;
+    } else {
+        connection.status = ConnectStatus::blocked;
+    }
+    return connection;
+}
+
+}  // namespace etendue

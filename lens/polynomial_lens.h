@@ -1,0 +1,76 @@
+// PolynomialLens: a lens model made of fitted polynomials, in either form of FitForm. It is asked
+// exactly what a TracedLens is, and answers within the fit's errors.
+//
+// Lens space: the origin at the vertex of the first surface (optical_system.h).
+#pragma once
+
+#include "lens/fitted_map.h"
+
+namespace etendue {
+
+/// How connect() searches for the sensor point.
+enum class ConnectMethod {
+    newton,  // in s, at a fixed aperture point, from the fit's own first guess; damped
+    twoStep  // the published one (two_step_newton.h)
+};
+
+enum class ConnectStatus {
+    found,
+    outOfField,  // no sensor point of the domain sees the target
+    blocked,     // one does, but no light passes there, or the lens' map has turned over
+    unsolved     // the search ended nowhere
+};
+
+struct Connection {
+    ConnectStatus status = ConnectStatus::unsolved;
+    std::optional<SensorPoint> sensor;  // when found
+    int iterations = 0;                 // steps of Newton's method, those in vain included
+};
+
+class PolynomialLens final : public LensModel {
+public:
+    /// Throws std::invalid_argument when the fit is of another prescription, or the aperture wider
+    /// than its domain.
+    PolynomialLens(const Prescription& prescription, const LensFit& fit, const Aperture& aperture);
+
+    /// Empty outside the fit's domain and outside the aperture, where a rim blocks the ray, where
+    /// the polynomials give no ray or no light, and where the fitted map has turned over, as in
+    /// TracedLens::trace.
+    std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture,
+                                 double wavelengthNm) const override;
+    /// By ConnectMethod::newton.
+    std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                                       double wavelengthNm) const override;
+    AperturePoint sampleAperture(Eigen::Vector2d u) const override;
+    double apertureAreaMm2() const override { return aperture_.areaMm2(); }
+
+    /// connect(), and how it went.
+    Connection solve(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm,
+                     ConnectMethod method = ConnectMethod::newton) const;
+
+    const FitDomain& domain() const { return domain_; }
+
+private:
+    std::optional<Eigen::Vector2d> firstGuess(const Eigen::Vector3d& target, AperturePoint aperture,
+                                              double wavelengthNm) const;
+    ConnectStatus statusOf(SensorPoint sensor, const ExitRay& ray, AperturePoint aperture,
+                           double wavelengthNm) const;
+    Connection solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture,
+                             double wavelengthNm) const;
+    Connection solveByTwoSteps(const Eigen::Vector3d& target, AperturePoint aperture,
+                               double wavelengthNm) const;
+
+    FittedMap map_;
+    FitDomain domain_;
+    Aperture aperture_;
+    PolynomialEvaluator<double> squaredHeights_;
+    std::size_t rims_;
+    PolynomialEvaluator<double> start_;
+    double widestField_;
+    double focalLengthMm_;
+    Eigen::Vector2d entrancePupilPerStop_;
+    double entrancePupilZMm_;
+    double pupilWanderMm_;  // how far rays may leave from where the paraxial pupil says
+};
+
+}  // namespace etendue

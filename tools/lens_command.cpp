@@ -2,10 +2,12 @@
 #include "tools/lens_command.h"
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <memory>
 #include <stdexcept>
 
 #include "tools/lens_draw.h"
+#include "tools/lens_fit_command.h"
 #include "tools/lens_info.h"
 
 namespace etendue {
@@ -86,12 +88,64 @@ void addDraw(CLI::App& lens, Chosen& chosen) {
     runWhenChosen(draw, chosen, command, runLensDraw);
 }
 
+/// One of a few names, as what it stands for.
+template <class Value, class Target>
+void addChoice(CLI::App* subcommand, const char* flag, const char* description,
+               const std::map<std::string, Value>& values, Target& target) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : values) names.push_back(name);
+    subcommand
+        ->add_option_function<std::string>(
+            flag, [values, &target](const std::string& name) { target = values.at(name); },
+            description)
+        ->check(CLI::IsMember(names).description(""))
+        ->type_name("NAME");
+}
+
+void addFitOptions(CLI::App* subcommand, FitOptions& options) {
+    subcommand->add_option("--terms", options.terms, "Of each polynomial; default: 40")
+        ->check(CLI::Range(1, 5000).description(""))
+        ->type_name("N");
+    subcommand->add_option("--degree", options.degree, "The highest; default: 11")
+        ->check(CLI::Range(1, mostPower).description(""))
+        ->type_name("N");
+    addChoice(
+        subcommand, "--basis",
+        "axial, two-plane, cartesian (the published one), none; default: by the lens' symmetry",
+        std::map<std::string, PolynomialBasis>{{"axial", PolynomialBasis::axial},
+                                               {"two-plane", PolynomialBasis::twoPlane},
+                                               {"cartesian", PolynomialBasis::cartesian},
+                                               {"none", PolynomialBasis::none}},
+        options.basis);
+    addChoice(subcommand, "--form", "two-point (default), or sensor-state, the published one",
+              std::map<std::string, FitForm>{{"two-point", FitForm::twoPoint},
+                                             {"sensor-state", FitForm::sensorState}},
+              options.form);
+    subcommand
+        ->add_option("--wavelengths", options.wavelengthsNm,
+                     "The shortest and the longest, in nm; default: 400,700")
+        ->delimiter(',')
+        ->expected(2)
+        ->type_name("A,B");
+}
+
+void addFit(CLI::App& lens, Chosen& chosen) {
+    const auto command = std::make_shared<LensFitCommand>();
+    CLI::App* fit =
+        lens.add_subcommand("fit", "Fit sparse polynomials to a lens, and report their errors");
+    addLens(fit, command->choice);
+    addFitOptions(fit, command->options);
+    fit->add_option("-o,--output", command->output, "Also write the fit here")->type_name("FILE");
+    addJson(fit, command->asJson);
+    runWhenChosen(fit, chosen, command, runLensFit);
+}
+
 }  // namespace
 
 void addLensCommands(CLI::App& app, Chosen& chosen) {
     CLI::App* lens = app.add_subcommand("lens", "Look at a lens, draw it, fit polynomials to it");
     lens->require_subcommand(1);
-    for (const auto add : {addInfo, addDraw}) add(*lens, chosen);
+    for (const auto add : {addInfo, addDraw, addFit}) add(*lens, chosen);
 }
 
 }  // namespace etendue

@@ -15,8 +15,10 @@ struct Outcome {
     std::string output;  // both streams
 };
 
-inline Outcome run(const std::string& arguments) {
-    FILE* pipe = popen((std::string(ETENDUE_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
+/// `environment`: "NAME=value", or nothing.
+inline Outcome run(const std::string& arguments, const std::string& environment = "") {
+    const std::string line = environment + " " + ETENDUE_COMMAND + " " + arguments + " 2>&1";
+    FILE* pipe = popen(line.c_str(), "r");
     REQUIRE(pipe);
     Outcome outcome{};
     std::array<char, 4096> buffer;
@@ -26,7 +28,7 @@ inline Outcome run(const std::string& arguments) {
     return outcome;
 }
 
-inline bool contains(const std::string& text, const char* fragment) {
+inline bool contains(const std::string& text, const std::string& fragment) {
     return text.find(fragment) != std::string::npos;
 }
 

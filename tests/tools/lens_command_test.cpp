@@ -59,3 +59,30 @@ TEST_CASE("Lens command: draw writes a whole picture with every field") {
     CHECK(run("lens draw tessar-100mm -o " + (folder.path() / "no/x.svg").string()).code == 66);
     CHECK(run("lens draw tessar-100mm --wavelengths 200 -o " + svg).code == 64);
 }
+
+TEST_CASE("Lens command: fit reports its errors, and the second run takes it from the cache") {
+    const TemporaryFolder folder;
+    const std::string setting = "XDG_CACHE_HOME=" + folder.path().string();
+    const std::string arguments = "lens fit tessar-100mm --terms 8 --degree 5";
+    const Outcome first = run(arguments, setting);
+    CHECK(first.code == 0);
+    CHECK(contains(first.output, "fitting Tessar"));
+    CHECK(contains(first.output, "8 terms of degree 5"));
+    CHECK(contains(first.output, "mrad"));
+    CHECK(contains(first.output, "étendue"));
+    CHECK(contains(first.output, "kept in " + folder.path().string()));
+    const Outcome second = run(arguments, setting);
+    CHECK_FALSE(contains(second.output, "fitting"));
+    CHECK(contains(second.output, "from the cache"));
+    const std::string file = (folder.path() / "fit.json").string();
+    const Outcome json = run(arguments + " --json -o " + file, setting);
+    CHECK(contains(json.output, "\"from_cache\": true"));
+    CHECK(contains(json.output, "\"direction_mrad\""));
+    CHECK(readFile(file).starts_with("{"));
+}
+
+TEST_CASE("Lens command: a basis that does not suit the lens is refused") {
+    CHECK(run("lens fit anamorphic-80x90mm --basis axial").code == 64);
+    CHECK(run("lens fit tessar-100mm --basis axil").code == 64);
+    CHECK(run("lens fit tessar-100mm --wavelengths 700,400").code == 64);
+}

@@ -4,17 +4,10 @@
 
 #include <limits>
 
+#include "tests/tools/command_outcome.h"
 #include "tools/svg_plot.h"
 
 using namespace etendue;
-
-namespace {
-
-bool contains(const std::string& text, const char* fragment) {
-    return text.find(fragment) != std::string::npos;
-}
-
-}  // namespace
 
 TEST_CASE("Svg: texts are escaped, and gaps interrupt lines") {
     Svg svg(100.0, 50.0);

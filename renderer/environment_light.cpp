@@ -56,8 +56,8 @@ std::vector<double> texelWeights(const Texture& image, float scale) {
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             const Spectrum value = image.texel(x, y) * scale;
-            for (const float lane : value.lane)
-                if (!(lane >= 0.0f && std::isfinite(lane)))
+            for (int lane = 0; lane < Spectrum::lanes; ++lane)
+                if (!(value[lane] >= 0.0f && std::isfinite(value[lane])))
                     throw InputError("environment image: texel (" + std::to_string(x) + ", " +
                                      std::to_string(y) +
                                      "): expected radiance from 0 to 3e38, scale included");

@@ -32,20 +32,17 @@ float fresnelConductor(float cosIncident, float eta, float k) {
 }
 
 Spectrum fresnelConductor(float cosIncident, const ConductorOptics& optics) {
-    Spectrum result;
-    for (int i = 0; i < Spectrum::lanes; ++i)
-        result[i] = fresnelConductor(cosIncident, optics.eta[i], optics.k[i]);
-    return result;
+    return Spectrum::fromLanes(
+        [&](int i) { return fresnelConductor(cosIncident, optics.eta[i], optics.k[i]); });
 }
 
 Spectrum fresnelConductorAverage(const ConductorOptics& optics) {
     const QuadratureRule rule = gaussLegendre(48);
-    Spectrum result;
-    for (int i = 0; i < Spectrum::lanes; ++i)
-        result[i] = static_cast<float>(rule.integrate(0.0, 1.0, [&](double mu) {
+    return Spectrum::fromLanes([&](int i) {
+        return static_cast<float>(rule.integrate(0.0, 1.0, [&](double mu) {
             return 2.0 * mu * fresnelConductor(static_cast<float>(mu), optics.eta[i], optics.k[i]);
         }));
-    return result;
+    });
 }
 
 }  // namespace etendue

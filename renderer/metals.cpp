@@ -143,14 +143,12 @@ OpticalConstants opticalConstants(std::string_view name, double wavelengthNm) {
 
 ConductorOptics metalOptics(std::string_view name) {
     const RgbOptics rgbOptics = averageOverLanes(tableOf(name));
-    ConductorOptics optics;
-    for (int i = 0; i < Spectrum::lanes; ++i) {
-        const int lane = std::min(i, 2);  // the unused fourth lane repeats the third
-        optics.eta[i] = static_cast<float>(rgbOptics.eta[lane]);
-        optics.k[i] =
-            static_cast<float>(extinction(rgbOptics.reflectance[lane], rgbOptics.eta[lane]));
-    }
-    return optics;
+    const auto used = [](int i) { return std::min(i, 2); };  // the fourth lane repeats the third
+    return {Spectrum::fromLanes([&](int i) { return static_cast<float>(rgbOptics.eta[used(i)]); }),
+            Spectrum::fromLanes([&](int i) {
+                return static_cast<float>(
+                    extinction(rgbOptics.reflectance[used(i)], rgbOptics.eta[used(i)]));
+            })};
 }
 
 }  // namespace etendue

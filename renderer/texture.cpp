@@ -163,7 +163,7 @@ Spectrum Texture::average() const {
     for (int y = 0; y < height(); ++y)
         for (int x = 0; x < width(); ++x) {
             const Spectrum value = texel(x, y);
-            for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += value.lane[c];
+            for (int c = 0; c < 3; ++c) sum[static_cast<std::size_t>(c)] += value[c];
         }
     const auto count = static_cast<double>(texelCount(*image_));
     return rgb(static_cast<float>(sum[0] / count), static_cast<float>(sum[1] / count),

@@ -19,9 +19,14 @@ Distribution1D::Distribution1D(std::span<const double> weights) {
 std::optional<DiscreteSample> Distribution1D::sample(double u) const {
     assert(u >= 0.0 && u < 1.0);
     if (totalWeight_ <= 0.0) return {};
-    // The first bound above u ends a share that contains u, hence one that is not empty.
-    const auto above = std::upper_bound(cumulative_.begin(), cumulative_.end(), u);
-    const auto index = static_cast<std::size_t>(above - cumulative_.begin()) - 1;
+    // The last bound at or below u begins a share that contains u, hence one that is not empty.
+    // Searched without a branch, for its outcome would be guessed wrong half of the time.
+    std::size_t index = 0;
+    for (std::size_t left = size(); left > 1;) {
+        const std::size_t half = left / 2;
+        index += half * static_cast<std::size_t>(cumulative_[index + half] <= u);
+        left -= half;
+    }
     const double share = probability(index);
     constexpr double oneBelowOne = 1.0 - 0x1p-53;
     return DiscreteSample{index, share, std::min((u - cumulative_[index]) / share, oneBelowOne)};

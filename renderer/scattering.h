@@ -38,12 +38,13 @@ inline std::optional<BsdfSample> sampleScattering(const SurfacePoint& point,
                                                   Vec2 u) {
     const Vec3 localWo = point.shading.localFromWorld(wo);
     if (!sidesAgree(point, wo, localWo.z)) return std::nullopt;
-    std::optional<BsdfSample> sample = point.material->bsdf->sample(context, localWo, uLobe, u);
+    const std::optional<BsdfSample> sample =
+        point.material->bsdf->sample(context, localWo, uLobe, u);
     if (!sample) return std::nullopt;
-    const float localZ = sample->wi.z;
-    sample->wi = normalize(point.shading.worldFromLocal(sample->wi));
-    if (!sidesAgree(point, sample->wi, localZ)) return std::nullopt;
-    return sample;
+    const Vec3 wi = renormalize(point.shading.worldFromLocal(sample->wi));
+    if (!sidesAgree(point, wi, sample->wi.z)) return std::nullopt;
+    return BsdfSample{wi, sample->weight, sample->pdfSolidAngle, sample->pdfSolidAngleReverse,
+                      sample->isDirac};
 }
 
 }  // namespace etendue

@@ -73,6 +73,12 @@ Vec3T<T> normalize(Vec3T<T> a) {
     return a * (T{1} / length(a));
 }
 
+/// Of a vector that is unit but for rounding ε: unit to ε², without root and division.
+template <class T>
+constexpr Vec3T<T> renormalize(Vec3T<T> a) {
+    return a * (T(1.5) - T(0.5) * lengthSquared(a));
+}
+
 template <class T>
 Vec3T<T> abs(Vec3T<T> a) {
     return {std::abs(a.x), std::abs(a.y), std::abs(a.z)};

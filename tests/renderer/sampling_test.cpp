@@ -81,6 +81,27 @@ TEST_CASE("Sampling: random numbers at the edge give points on the domain") {
         }
 }
 
+TEST_CASE("Sampling: the unit circle is the library's to its last bits") {
+    // One rounding of the result, and one of the argument, each half an ulp of 1.
+    constexpr double tolerance = 0x1p-23;
+    for (int i = 0; i <= 100000; ++i) {
+        const float turns = static_cast<float>(i) / 100000;
+        const Vec2 p = onUnitCircle(turns);
+        const double angle = 2.0 * std::numbers::pi * turns;
+        REQUIRE(std::abs(p.x - std::cos(angle)) < tolerance);
+        REQUIRE(std::abs(p.y - std::sin(angle)) < tolerance);
+    }
+}
+
+TEST_CASE("Vec3: renormalizing undoes a rounding") {
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        const Vec3 unit = sampleUnitSphere(RandomStream(1, i, 0).next2());
+        // Off by ε the square of the length is off by 2ε; what is left is 3/2 ε² and rounding.
+        const Vec3d off = normalize(toDouble(unit)) * (1.0 + 1e-5);
+        REQUIRE(std::abs(length(renormalize(off)) - 1.0) < 2e-10);
+    }
+}
+
 TEST_CASE("Frame: orthonormal around any normal, the poles included") {
     std::vector<Vec3> normals{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}, {0, 0, -0.0f}};
     normals.pop_back();

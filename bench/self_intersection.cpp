@@ -40,7 +40,7 @@ Failures leaveSphere(double radius, Vec3d center, bool isInstanced, float share)
         const Vec3 direction = normalize(toFloat(center + toDouble(aim) * (0.9 * radius)) - origin);
         const auto hit = intersector.closestHit({origin, direction});
         if (!hit) continue;
-        SurfacePoint point = surfacePoint(mesh, instance, *hit);
+        SurfacePoint point(mesh, instance, *hit);
         point.positionError *= share;
         const Vec3 out = Frame::fromZ(point.geometricNormal)
                              .worldFromLocal(sampleCosineHemisphere(random.next2()));

@@ -16,13 +16,6 @@ Vec3d areaVector(const EmissiveTriangle& t) {
     return cross(toDouble(t.b) - toDouble(t.a), toDouble(t.c) - toDouble(t.a));
 }
 
-Distribution1D distributionByArea(const std::vector<EmissiveTriangle>& triangles) {
-    std::vector<double> areas;
-    areas.reserve(triangles.size());
-    for (const EmissiveTriangle& t : triangles) areas.push_back(0.5 * length(areaVector(t)));
-    return Distribution1D(areas);
-}
-
 /// Rounding of the position to float, and of the triangle inside the intersector: a few roundings
 /// of its largest coordinate, whatever the axis, because they tilt its plane.
 float positionErrorOf(const EmissiveTriangle& t) {
@@ -30,11 +23,32 @@ float positionErrorOf(const EmissiveTriangle& t) {
     return roundings * epsilon * maxComponent(max(max(abs(t.a), abs(t.b)), abs(t.c)));
 }
 
+/// What sampling asks of a triangle.
+struct Emitter {
+    explicit Emitter(const EmissiveTriangle& t)
+        : corner(toDouble(t.a)),
+          edgeB(toDouble(t.b) - corner),
+          edgeC(toDouble(t.c) - corner),
+          normal(toFloat(normalize(areaVector(t)))),
+          positionError(positionErrorOf(t)) {}
+
+    Vec3d corner, edgeB, edgeC;
+    Vec3 normal;  // meaningless without area; such a triangle is never chosen
+    float positionError;
+};
+
+Distribution1D distributionByArea(const std::vector<EmissiveTriangle>& triangles) {
+    std::vector<double> areas;
+    areas.reserve(triangles.size());
+    for (const EmissiveTriangle& t : triangles) areas.push_back(0.5 * length(areaVector(t)));
+    return Distribution1D(areas);
+}
+
 class AreaLight final : public Light {
 public:
-    AreaLight(std::vector<EmissiveTriangle> triangles, Spectrum radiance, bool isTwoSided)
-        : triangles_(std::move(triangles)),
-          byArea_(distributionByArea(triangles_)),
+    AreaLight(const std::vector<EmissiveTriangle>& triangles, Spectrum radiance, bool isTwoSided)
+        : emitters_(triangles.begin(), triangles.end()),
+          byArea_(distributionByArea(triangles)),
           radiance_(radiance),
           isTwoSided_(isTwoSided),
           smallestPdf_(
@@ -77,7 +91,7 @@ private:
         return pdf >= smallestPdf_ && pdf <= largestFloat ? static_cast<float>(pdf) : 0.0f;
     }
 
-    std::vector<EmissiveTriangle> triangles_;
+    std::vector<Emitter> emitters_;
     Distribution1D byArea_;
     Spectrum radiance_;
     bool isTwoSided_;
@@ -92,13 +106,10 @@ std::optional<AreaLight::SurfaceSample> AreaLight::sampleSurface(Vec2 u) const {
     const double x = u.x + 0x1p-24 * (fineY - std::floor(fineY));
     const auto chosen = byArea_.sample(x);
     if (!chosen) return {};
-    const EmissiveTriangle& t = triangles_[chosen->index];
+    const Emitter& e = emitters_[chosen->index];
     const Vec2 b = sampleTriangle({unitFloat(chosen->remainder), u.y});
-    const Vec3d a = toDouble(t.a);
-    const Vec3d position =
-        a + (toDouble(t.b) - a) * double{b.x} + (toDouble(t.c) - a) * double{b.y};
-    const float error = positionErrorOf(t);
-    return SurfaceSample{position, {error, error, error}, toFloat(normalize(areaVector(t)))};
+    const Vec3d position = e.corner + e.edgeB * double{b.x} + e.edgeC * double{b.y};
+    return SurfaceSample{position, {e.positionError, e.positionError, e.positionError}, e.normal};
 }
 
 std::optional<LightSample> AreaLight::sample(Vec3 receiver, Vec2 u) const {
@@ -108,16 +119,16 @@ std::optional<LightSample> AreaLight::sample(Vec3 receiver, Vec2 u) const {
     const double distance = length(toLight);
     if (distance == 0.0) return {};
 
-    LightSample result{};
-    result.direction = toFloat(toLight / distance);
-    result.distance = static_cast<float>(distance);
-    result.position = toFloat(surface->position);
-    result.positionError = surface->positionError;
-    result.normal = surface->normal;
-    result.radiance = radiance_;
-    result.pdfSolidAngle = pdfSolidAngle({result.direction, result.distance, result.normal});
-    if (result.pdfSolidAngle == 0.0f) return {};
-    return result;
+    const Vec3 direction = toFloat(toLight / distance);
+    const float pdf = pdfSolidAngle({direction, static_cast<float>(distance), surface->normal});
+    if (pdf == 0.0f) return {};
+    return LightSample{.direction = direction,
+                       .distance = static_cast<float>(distance),
+                       .position = toFloat(surface->position),
+                       .positionError = surface->positionError,
+                       .normal = surface->normal,
+                       .radiance = radiance_,
+                       .pdfSolidAngle = pdf};
 }
 
 float AreaLight::pdfSolidAngle(const EmitterHit& hit) const {
@@ -155,7 +166,7 @@ EmissionPdf AreaLight::emissionPdf(const EmitterHit& hit) const {
 
 std::unique_ptr<Light> makeAreaLight(std::vector<EmissiveTriangle> triangles, Spectrum radiance,
                                      bool isTwoSided) {
-    return std::make_unique<AreaLight>(std::move(triangles), radiance, isTwoSided);
+    return std::make_unique<AreaLight>(triangles, radiance, isTwoSided);
 }
 
 }  // namespace etendue

@@ -88,9 +88,7 @@ std::optional<CameraRay> Camera::sampleRay(Vec2 film, Vec2 apertureUniform,
                                            const Wavelengths& wavelengths) const {
     const SensorPoint sensor{(toEigen(film) - filmCenter(settings_)) * pixelMm_};  // (3)
     const AperturePoint aperture = lens_->sampleAperture(toEigen(apertureUniform));
-    const std::optional<ExitRay> exit = lens_->trace(sensor, aperture, wavelengths.heroNm());
-    if (!exit) return {};
-    return worldRay(*exit);
+    return worldRay(lens_->trace(sensor, aperture, wavelengths.heroNm()));
 }
 
 std::optional<CameraConnection> Camera::connect(Vec3 scenePoint, Vec2 apertureUniform,
@@ -109,7 +107,7 @@ std::optional<CameraConnection> Camera::connect(Vec3 scenePoint, Vec2 apertureUn
     const Eigen::Vector2d film = sensor->mm / pixelMm_ + filmCenter(settings_);  // (3)
     CameraConnection connection;
     connection.film = {static_cast<float>(film.x()), static_cast<float>(film.y())};
-    connection.ray = worldRay(*exit);
+    connection.ray = *worldRay(exit);
     connection.distance = static_cast<float>((targetMm - exit->origin).norm() * metresPerMm);
     const bool isBeyondFloat =
         !isFinite(Vec3{connection.film.x, connection.film.y, connection.distance});
@@ -117,20 +115,21 @@ std::optional<CameraConnection> Camera::connect(Vec3 scenePoint, Vec2 apertureUn
     return connection;
 }
 
-CameraRay Camera::worldRay(const ExitRay& exit) const {
+std::optional<CameraRay> Camera::worldRay(const std::optional<ExitRay>& exit) const {
+    if (!exit) return {};
     const Transform& world = settings_.worldFromLens;
-    CameraRay ray;
-    ray.origin = toFloat(world.point(fromEigen(exit.origin) * metresPerMm));
-    ray.direction = toFloat(world.vector(fromEigen(exit.direction)));
-    ray.weight = static_cast<float>(exit.throughput * weightScale_);  // (4)
-    for (int i = 0; i < 2; ++i) {
-        const Vec3d origin = fromEigen(exit.originBySensor.col(i)) * (pixelMm_ * metresPerMm);
-        const Vec3d direction = fromEigen(exit.directionBySensor.col(i)) * pixelMm_;
-        const auto k = static_cast<std::size_t>(i);
-        ray.originByPixel[k] = toFloat(world.vector(origin));
-        ray.directionByPixel[k] = toFloat(world.vector(direction));
-    }
-    return ray;
+    const auto byPixel = [&](const Eigen::Vector3d& bySensor, double unit) {
+        return toFloat(world.vector(fromEigen(bySensor) * (pixelMm_ * unit)));
+    };
+    return CameraRay{
+        .origin = toFloat(world.point(fromEigen(exit->origin) * metresPerMm)),
+        .direction = toFloat(world.vector(fromEigen(exit->direction))),
+        .weight = static_cast<float>(exit->throughput * weightScale_),  // (4)
+        .originByPixel = {byPixel(exit->originBySensor.col(0), metresPerMm),
+                          byPixel(exit->originBySensor.col(1), metresPerMm)},
+        .directionByPixel = {byPixel(exit->directionBySensor.col(0), 1.0),
+                             byPixel(exit->directionBySensor.col(1), 1.0)},
+    };
 }
 
 Vec3 Camera::position() const { return toFloat(settings_.worldFromLens.translation); }

@@ -63,7 +63,7 @@ public:
     Vec3 forward() const;
 
 private:
-    CameraRay worldRay(const ExitRay& exit) const;
+    std::optional<CameraRay> worldRay(const std::optional<ExitRay>& exit) const;
 
     std::shared_ptr<const LensModel> lens_;
     CameraSettings settings_;

@@ -16,13 +16,14 @@ public:
     }
 
     std::optional<LightSample> sample(Vec3, Vec2 u) const override {
-        LightSample result{};
-        result.direction = sampleUnitSphere(u);
-        result.distance = std::numeric_limits<float>::infinity();
-        result.normal = -result.direction;
-        result.radiance = radiance_;
-        result.pdfSolidAngle = uniformSpherePdfSolidAngle;
-        return result;
+        const Vec3 direction = sampleUnitSphere(u);
+        return LightSample{.direction = direction,
+                           .distance = std::numeric_limits<float>::infinity(),
+                           .position = {},
+                           .positionError = {},
+                           .normal = -direction,
+                           .radiance = radiance_,
+                           .pdfSolidAngle = uniformSpherePdfSolidAngle};
     }
 
     Spectrum radiance(const EmitterHit&) const override { return radiance_; }

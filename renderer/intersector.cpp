@@ -16,10 +16,12 @@ namespace {
 constexpr float largestCoordinate = 1e18f;  // beyond 1.8e18 Embree aborts the process
 
 bool isTraceable(const Ray& ray) {
-    const auto inside = [](Vec3 v) { return maxComponent(abs(v)) <= largestCoordinate; };
     // Written so that NaN fails.
-    return isFinite(ray.origin) && isFinite(ray.direction) && inside(ray.origin) &&
-           inside(ray.direction) && maxComponent(abs(ray.direction)) > 0.0f &&
+    const auto inside = [](Vec3 v) {
+        return std::abs(v.x) <= largestCoordinate && std::abs(v.y) <= largestCoordinate &&
+               std::abs(v.z) <= largestCoordinate;
+    };
+    return inside(ray.origin) && inside(ray.direction) && ray.direction != Vec3{} &&
            ray.maxDistance >= 0.0f;
 }
 

@@ -53,8 +53,4 @@ private:
     mutable std::atomic<std::uint64_t> refusedRays_{0};
 };
 
-/// The point of a hit in world space: computed in double from the barycentric coordinates, so that
-/// its error does not grow with the ray's length. docs/precision.md derives the bound.
-SurfacePoint surfacePoint(const Mesh& mesh, const Instance& instance, const RayHit& hit);
-
 }  // namespace etendue

@@ -53,14 +53,20 @@ struct Sampler {
         const Wavelengths wavelengths;
         const auto ray = camera.sampleRay(filmPoint, random.next2(), wavelengths);
         if (!ray) return;
+        const Spectrum radiance =
+            film.wantsFeatures() ? radianceAndFeatures(x, y, *ray, wavelengths, random)
+                                 : estimator.radiance(scene, *ray, wavelengths, random, nullptr);
+        if (!film.add(x, y, radiance * ray->weight)) rememberBad({x, y, sample});
+    }
+
+    Spectrum radianceAndFeatures(int x, int y, const CameraRay& ray, const Wavelengths& wavelengths,
+                                 RandomStream& random) {
         std::optional<FirstHit> hit;
-        const Spectrum radiance = estimator.radiance(scene, *ray, wavelengths, random,
-                                                     film.wantsFeatures() ? &hit : nullptr);
-        const bool isGood = film.add(x, y, radiance * ray->weight);
+        const Spectrum radiance = estimator.radiance(scene, ray, wavelengths, random, &hit);
         if (hit)
             film.addFeatures(
                 x, y, {hit->albedo, hit->point.shading.z, hit->point.position, hit->distance});
-        if (!isGood) rememberBad({x, y, sample});
+        return radiance;
     }
 
     void rememberBad(BadSample b) {

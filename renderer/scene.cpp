@@ -133,7 +133,7 @@ std::optional<SurfacePoint> Scene::closestHit(const Ray& ray) const {
     const std::optional<RayHit> hit = intersector_->closestHit(ray);
     if (!hit) return std::nullopt;
     const Instance& instance = instances_[hit->instance];
-    return surfacePoint(meshes_[instance.mesh], instance, *hit);
+    return std::optional<SurfacePoint>(std::in_place, meshes_[instance.mesh], instance, *hit);
 }
 
 bool Scene::isVisible(Vec3 from, Vec3 to) const {

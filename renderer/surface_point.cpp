@@ -15,7 +15,7 @@ Vec3d absVector(const Transform& t, Vec3d v) {
 /// a rounding in one axis tilts the plane into the others, so that the bound is the same for all;
 /// in an instance the origin is also carried through the rounded inverse transform.
 /// docs/precision.md.
-Vec3 positionError(const std::array<Vec3d, 3>& corner, Vec3d position, const Instance& instance) {
+Vec3 positionErrorOf(const std::array<Vec3d, 3>& corner, Vec3d position, const Instance& instance) {
     constexpr double roundings = 4.0;
     constexpr double epsilon = 0x1p-24;
     Vec3d magnitude = abs(position);
@@ -32,7 +32,7 @@ Vec3 positionError(const std::array<Vec3d, 3>& corner, Vec3d position, const Ins
 
 }  // namespace
 
-SurfacePoint surfacePoint(const Mesh& mesh, const Instance& instance, const RayHit& hit) {
+SurfacePoint::SurfacePoint(const Mesh& mesh, const Instance& instance, const RayHit& hit) {
     const auto& index = mesh.triangles[hit.triangle];
     const bool isInWorldSpace = instance.isInWorldSpace;
     const Transform& t = instance.worldFromMesh;
@@ -42,17 +42,16 @@ SurfacePoint surfacePoint(const Mesh& mesh, const Instance& instance, const RayH
         if (!isInWorldSpace) corner[i] = t.point(corner[i]);
     }
     const double b1 = hit.b1, b2 = hit.b2, b0 = 1.0 - b1 - b2;
-    const Vec3d position = corner[0] * b0 + corner[1] * b1 + corner[2] * b2;
+    const Vec3d place = corner[0] * b0 + corner[1] * b1 + corner[2] * b2;
     Vec3d normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
     // A mirror turns the winding around; the front side stays the front side.
     const bool isMirrored = !isInWorldSpace && t.determinant() < 0.0;
     if (isMirrored) normal = -normal;
 
-    SurfacePoint point;
-    point.position = toFloat(position);
-    point.positionError = positionError(corner, position, instance);
-    point.geometricNormal = toFloat(normalize(normal));
-    Vec3 shadingNormal = point.geometricNormal;
+    position = toFloat(place);
+    positionError = positionErrorOf(corner, place, instance);
+    geometricNormal = toFloat(normalize(normal));
+    Vec3 shadingNormal = geometricNormal;
     if (!mesh.normals.empty()) {
         Vec3 n = mesh.normals[index[0]] * static_cast<float>(b0) + mesh.normals[index[1]] * hit.b1 +
                  mesh.normals[index[2]] * hit.b2;
@@ -61,16 +60,15 @@ SurfacePoint surfacePoint(const Mesh& mesh, const Instance& instance, const RayH
             n = toFloat(normalize(t.normal(toDouble(n))));
         // Opposite vertex normals may cancel; then the plane's own normal is the only one left.
         if (lengthSquared(n) > 0.0f)
-            shadingNormal = normalize(dot(n, point.geometricNormal) < 0 ? -n : n);
+            shadingNormal = normalize(dot(n, geometricNormal) < 0 ? -n : n);
     }
-    point.shading = Frame::fromZ(shadingNormal);
+    shading = Frame::fromZ(shadingNormal);
     if (!mesh.textureCoordinates.empty())
-        point.uv = mesh.textureCoordinates[index[0]] * static_cast<float>(b0) +
-                   mesh.textureCoordinates[index[1]] * hit.b1 +
-                   mesh.textureCoordinates[index[2]] * hit.b2;
-    point.material = instance.materials[mesh.materialOfTriangle[hit.triangle]];
-    if (!instance.lightOfTriangle.empty()) point.light = instance.lightOfTriangle[hit.triangle];
-    return point;
+        uv = mesh.textureCoordinates[index[0]] * static_cast<float>(b0) +
+             mesh.textureCoordinates[index[1]] * hit.b1 +
+             mesh.textureCoordinates[index[2]] * hit.b2;
+    material = instance.materials[mesh.materialOfTriangle[hit.triangle]];
+    if (!instance.lightOfTriangle.empty()) light = instance.lightOfTriangle[hit.triangle];
 }
 
 }  // namespace etendue

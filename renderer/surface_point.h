@@ -11,7 +11,10 @@
 
 namespace etendue {
 
+struct Instance;
 struct Material;
+struct Mesh;
+struct RayHit;
 
 struct Ray {
     Vec3 origin;
@@ -20,6 +23,11 @@ struct Ray {
 };
 
 struct SurfacePoint {
+    SurfacePoint() = default;
+    /// The point of a hit in world space: computed in double from the barycentric coordinates, so
+    /// that its error does not grow with the ray's length. docs/precision.md derives the bound.
+    SurfacePoint(const Mesh& mesh, const Instance& instance, const RayHit& hit);
+
     Vec3 position;
     Vec3 positionError;    // per axis: the surface that the intersector sees lies within ± this
     Vec3 geometricNormal;  // unit, on the front side (counter-clockwise winding)

@@ -9,7 +9,7 @@ set -eu
 packages="g++ cmake ninja-build
     libembree-dev libopenimageio-dev libeigen3-dev libtinyobjloader-dev libtbb-dev
     libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev libboost-dev"
-test_packages="doctest-dev assimp-testmodels glmark2-data"
+test_packages="doctest-dev assimp-testmodels glmark2-data glslang-tools"
 ci_packages="clang clang-format clang-tidy"
 
 case "${1:-}" in

@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "tools/lens_codegen_command.h"
 #include "tools/lens_draw.h"
 #include "tools/lens_fit_command.h"
 #include "tools/lens_info.h"
@@ -140,12 +141,29 @@ void addFit(CLI::App& lens, Chosen& chosen) {
     runWhenChosen(fit, chosen, command, runLensFit);
 }
 
+void addCodegen(CLI::App& lens, Chosen& chosen) {
+    const auto command = std::make_shared<LensCodegenCommand>();
+    CLI::App* codegen = lens.add_subcommand(
+        "codegen", "Write a fit as source text that stands on its own, for other programs");
+    addLens(codegen, command->choice);
+    addFitOptions(codegen, command->options);
+    addChoice(codegen, "--language", "c++ (a header; default), or glsl",
+              std::map<std::string, CodeLanguage>{{"c++", CodeLanguage::cPlusPlus},
+                                                  {"glsl", CodeLanguage::glsl}},
+              command->language);
+    codegen->add_option("-o,--output", command->output, "Default: standard output")
+        ->type_name("FILE");
+    codegen->add_option("--name", command->name, "Of the lens in the code; default: its file's")
+        ->type_name("NAME");
+    runWhenChosen(codegen, chosen, command, runLensCodegen);
+}
+
 }  // namespace
 
 void addLensCommands(CLI::App& app, Chosen& chosen) {
     CLI::App* lens = app.add_subcommand("lens", "Look at a lens, draw it, fit polynomials to it");
     lens->require_subcommand(1);
-    for (const auto add : {addInfo, addDraw, addFit}) add(*lens, chosen);
+    for (const auto add : {addInfo, addDraw, addFit, addCodegen}) add(*lens, chosen);
 }
 
 }  // namespace etendue

@@ -118,7 +118,7 @@ TEST_CASE("PolynomialLens: its footprint is the exact one within the fit's error
             // largest value (Markov); here over a half diagonal of 21.6 mm.
             const double bound = 81.0 * 1e-3 * fitted.fit.errors.directionMrad.most / 21.6;
             CHECK(off <= bound);
-            CHECK(ray->throughput == doctest::Approx(exact->throughput).epsilon(0.01));
+            CHECK(std::abs(ray->throughput - exact->throughput) <= 0.01 * exact->throughput);
         }
     }
 }
@@ -136,7 +136,8 @@ TEST_CASE("PolynomialLens: connect finds the film point that trace started from"
                 REQUIRE(found.status == ConnectStatus::found);
                 // Rounding: of a target 1e9 mm off, 1e-16 of an angle, times the focal length.
                 CHECK((found.sensor->mm - q.sensor.mm).norm() <= 1e-9);
-                CHECK(found.iterations <= 4);
+                // Seen from afar the first guess is off by a micrometre, from near by a parallax.
+                CHECK(found.iterations <= (distance < 1e3 ? 3 : 2));
             }
         }
 }
@@ -255,6 +256,31 @@ TEST_CASE("PolynomialLens: one aperture point sees one target from one film poin
                 }
         }
     }
+}
+
+TEST_CASE("PolynomialLens: where its map has turned over it says nothing, from either side") {
+    const Fitted& fitted = doubleGaussIn(FitForm::twoPoint);
+    LensFit fit = fitted.fit;
+    // Seen from afar the lens is −s/f, s up to 21.6 mm of 100. With as much of ρ s added, ρ being 1
+    // in the corners, directions turn back outward of 1/√3 of the way.
+    TermGroup& group = fit.exit.groups.front();
+    const Eigen::Index linear =
+        std::ranges::find(group.terms, Exponents{1, 0, 0, 0, 0}) - group.terms.begin();
+    REQUIRE(linear < group.coefficients.cols());
+    group.coefficients(2, linear) += 0.216;
+    const PolynomialLens lens(fitted.prescription, fit, fitted.stop);
+    const FittedMap map(fitted.prescription, fit);
+    const AperturePoint centre{{0.0, 0.0}};
+    const SensorPoint inside{{9.0, 6.0}}, outside{{17.0, 11.0}};
+    CHECK(lens.trace(inside, centre, greenNm).has_value());
+    CHECK_FALSE(lens.trace(outside, centre, greenNm).has_value());
+    const auto turned = map.exitRay(outside, centre, greenNm);
+    REQUIRE(turned.has_value());
+    const Eigen::Vector3d target = turned->origin + 1e4 * turned->direction;
+    const auto found = lens.connect(target, centre, greenNm);
+    // The same target is seen from within, too, where the map has not turned.
+    REQUIRE(found.has_value());
+    CHECK(found->mm.norm() < 0.75 * 21.6);
 }
 
 TEST_CASE("PolynomialLens: a pinhole of a stop, and a lens a thousand times smaller or larger") {

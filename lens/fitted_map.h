@@ -4,15 +4,9 @@
 
 #include "lens/lens_fit.h"
 #include "lens/polynomial.h"
-#include "lens/slope_solver.h"
+#include "lens/two_step_newton.h"
 
 namespace etendue {
-
-/// Where the ray of a sensor state crosses the stop, and how it leaves.
-struct StateRay {
-    StopHit stop;
-    ExitRay exit;  // derivatives at fixed slope; throughput is τ
-};
 
 class FittedMap {
 public:

@@ -4,28 +4,10 @@
 // Lens space: the origin at the vertex of the first surface (optical_system.h).
 #pragma once
 
+#include "lens/connection.h"
 #include "lens/fitted_map.h"
 
 namespace etendue {
-
-/// How connect() searches for the sensor point.
-enum class ConnectMethod {
-    newton,  // in s, at a fixed aperture point, from the fit's own first guess; damped
-    twoStep  // the published one (two_step_newton.h)
-};
-
-enum class ConnectStatus {
-    found,
-    outOfField,  // no sensor point of the domain sees the target
-    blocked,     // one does, but no light passes there, or the lens' map has turned over
-    unsolved     // the search ended nowhere
-};
-
-struct Connection {
-    ConnectStatus status = ConnectStatus::unsolved;
-    std::optional<SensorPoint> sensor;  // when found
-    int iterations = 0;                 // steps of Newton's method, those in vain included
-};
 
 class PolynomialLens final : public LensModel {
 public:
@@ -38,7 +20,7 @@ public:
     /// TracedLens::trace.
     std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture,
                                  double wavelengthNm) const override;
-    /// By ConnectMethod::newton.
+    /// By ConnectMethod::newton, from the fit's own first guess (connect_start.h).
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                        double wavelengthNm) const override;
     AperturePoint sampleAperture(Eigen::Vector2d u) const override;

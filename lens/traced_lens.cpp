@@ -54,8 +54,13 @@ std::optional<ExitRay> TracedLens::trace(SensorPoint sensor, AperturePoint apert
 
 std::optional<SensorPoint> TracedLens::connect(const Eigen::Vector3d& targetMm,
                                                AperturePoint aperture, double wavelengthNm) const {
-    if (!isInRange(wavelengthNm)) return {};
-    return MonochromaticLens(*this, wavelengthNm).connect(targetMm, aperture);
+    return solve(targetMm, aperture, wavelengthNm).sensor;
+}
+
+Connection TracedLens::solve(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                             double wavelengthNm, ConnectMethod method) const {
+    if (!isInRange(wavelengthNm)) return {ConnectStatus::outOfField, {}, 0};
+    return MonochromaticLens(*this, wavelengthNm).solve(targetMm, aperture, method);
 }
 
 AperturePoint TracedLens::sampleAperture(Eigen::Vector2d u) const {

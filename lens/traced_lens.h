@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "lens/lens_model.h"
+#include "lens/connection.h"
 #include "lens/paraxial.h"
 #include "lens/phase_space.h"
 #include "lens/sequential_trace.h"
@@ -47,6 +47,9 @@ public:
                                  double wavelengthNm) const override;
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                        double wavelengthNm) const override;
+    /// connect(), and how it went. No target is out of the field of a lens without a domain.
+    Connection solve(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm,
+                     ConnectMethod method = ConnectMethod::newton) const;
     AperturePoint sampleAperture(Eigen::Vector2d u) const override;
     double apertureAreaMm2() const override { return system_.aperture.areaMm2(); }
 
@@ -75,10 +78,14 @@ public:
     TracedRay traceToScene(const SensorState& sensor) const;
     TracedRay traceToSensor(const LensRay<double>& ray) const;
 
-    /// As LensModel's.
+    /// As TracedLens'.
     std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture) const;
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm,
-                                       AperturePoint aperture) const;
+                                       AperturePoint aperture) const {
+        return solve(targetMm, aperture).sensor;
+    }
+    Connection solve(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                     ConnectMethod method = ConnectMethod::newton) const;
 
     /// The ray through the centre of the stop, rims ignored.
     std::optional<ExitRay> chiefRay(SensorPoint sensor) const;
@@ -92,6 +99,8 @@ public:
 private:
     template <TraceMode mode>
     std::optional<ExitRay> exitRay(SensorPoint sensor, AperturePoint aperture) const;
+    Connection solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture) const;
+    Connection solveByTwoSteps(const Eigen::Vector3d& target, AperturePoint aperture) const;
 
     const TracedLens* lens_;
     std::vector<double> indices_;

@@ -6,6 +6,7 @@
 #include "lens/slope_solver.h"
 #include "lens/target_solver.h"
 #include "lens/traced_lens.h"
+#include "lens/two_step_newton.h"
 
 namespace etendue {
 
@@ -23,6 +24,21 @@ std::optional<StopHit> stopHit(const MonochromaticSystem& lens, SensorPoint sens
     const Passage passage = carryToScene<TraceMode::geometry>(lens, stop, end, ray, ignore);
     if (passage.status != TraceStatus::passed) return {};
     return StopHit{toEigen(valueOf(ray.origin)).head<2>(), partials(ray.origin).topRows<2>()};
+}
+
+std::optional<StateRay> stateRay(const MonochromaticSystem& lens, SensorPoint sensor,
+                                 const Eigen::Vector2d& q, double sensorZMm) {
+    using D = Dual<2>;
+    const std::optional<StopHit> hit = stopHit(lens, sensor, q, sensorZMm);
+    if (!hit) return {};
+    const PlaneState<D> state{D::variable(sensor.mm.x(), 0), D::variable(sensor.mm.y(), 1),
+                              D(q.x()), D(q.y())};
+    LensRay<D> ray = rayOf(state, sensorZMm);
+    const Passage passage =
+        carryToScene<TraceMode::geometry>(lens, 0, lens.system.surfaces.size(), ray, ignore);
+    if (passage.status != TraceStatus::passed) return {};
+    return StateRay{*hit, ExitRay{toEigen(valueOf(ray.origin)), toEigen(valueOf(ray.direction)),
+                                  partials(ray.origin), partials(ray.direction), 1.0}};
 }
 
 /// A ray as far as the stop, differentiated by (s, q).
@@ -116,19 +132,40 @@ std::optional<ExitRay> MonochromaticLens::chiefRay(SensorPoint sensor) const {
     return exitRay<TraceMode::geometry>(sensor, {{0.0, 0.0}});
 }
 
-std::optional<SensorPoint> MonochromaticLens::connect(const Eigen::Vector3d& targetMm,
-                                                      AperturePoint aperture) const {
-    if (!lens_->system().aperture.contains(aperture.mm) || !targetMm.allFinite()) return {};
+Connection MonochromaticLens::solve(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                                    ConnectMethod method) const {
+    if (!lens_->system().aperture.contains(aperture.mm) || !targetMm.allFinite())
+        return {ConnectStatus::outOfField, {}, 0};
+    return method == ConnectMethod::newton ? solveByNewton(targetMm, aperture)
+                                           : solveByTwoSteps(targetMm, aperture);
+}
+
+Connection MonochromaticLens::solveByNewton(const Eigen::Vector3d& target,
+                                            AperturePoint aperture) const {
     const auto exit = [&](const Eigen::Vector2d& s, double apertureShare) {
         return exitRay<TraceMode::geometry>({s}, {apertureShare * aperture.mm});
     };
-    const auto passing = [&](const std::optional<Aimed>& end) {
-        return end && trace({end->sensor}, aperture) ? std::optional(SensorPoint{end->sensor})
-                                                     : std::nullopt;
-    };
     TargetSolver solver(exit, lens_->focalLengthMm());
-    if (const auto found = passing(solver.newton(targetMm, {0.0, 0.0}))) return found;
-    return passing(solver.follow(targetMm));
+    const auto passing = [&](const std::optional<Aimed>& end) -> Connection {
+        if (!end) return {ConnectStatus::unsolved, {}, solver.steps()};
+        if (!trace({end->sensor}, aperture)) return {ConnectStatus::blocked, {}, solver.steps()};
+        return {ConnectStatus::found, SensorPoint{end->sensor}, solver.steps()};
+    };
+    const Connection direct = passing(solver.newton(target, {0.0, 0.0}));
+    return direct.sensor ? direct : passing(solver.follow(target));
+}
+
+Connection MonochromaticLens::solveByTwoSteps(const Eigen::Vector3d& target,
+                                              AperturePoint aperture) const {
+    const MonochromaticSystem view = system();
+    const auto ray = [&](SensorPoint s, const Eigen::Vector2d& q) {
+        return stateRay(view, s, q, lens_->sensorZMm());
+    };
+    const double stopRadiusMm = view.system.surfaces[view.system.stop].semiApertureMm;
+    const TwoStepResult end = twoStepNewton(ray, target, aperture, stopRadiusMm);
+    if (!end.sensor) return {ConnectStatus::unsolved, {}, end.iterations};
+    if (!trace(*end.sensor, aperture)) return {ConnectStatus::blocked, {}, end.iterations};
+    return {ConnectStatus::found, end.sensor, end.iterations};
 }
 
 }  // namespace etendue

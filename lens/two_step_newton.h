@@ -3,10 +3,16 @@
 // error → slope, error of the outgoing direction → sensor point, in turns, from the axis.
 #pragma once
 
-#include "lens/fitted_map.h"
+#include "lens/slope_solver.h"
 #include "lens/target_solver.h"
 
 namespace etendue {
+
+/// Where the ray of a sensor state crosses the stop, and how it leaves.
+struct StateRay {
+    StopHit stop;
+    ExitRay exit;  // derivatives at fixed slope; throughput is τ
+};
 
 struct TwoStepResult {
     std::optional<SensorPoint> sensor;

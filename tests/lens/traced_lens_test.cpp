@@ -260,6 +260,33 @@ TEST_CASE("TracedLens: trace finds every ray that passes") {
     }
 }
 
+TEST_CASE("TracedLens: where the published search ends, it ends where ours does") {
+    LensRandom random(58);
+    int found = 0, lost = 0;
+    for (const ShippedLens& shipped : shippedLenses()) {
+        CAPTURE(shipped.file);
+        const Fixture fixture(shipped);
+        for (int i = 0; i < 60; ++i) {
+            const double half = 0.4 * fixture.imageHeightMm;
+            const SensorPoint s = random.onSensor(half, half);
+            const AperturePoint a = fixture.lens->sampleAperture(random.inUnitSquare());
+            const auto ray = fixture.lens->trace(s, a, greenNm);
+            if (!ray) continue;
+            const Connection published = fixture.lens->solve(ray->origin + 1e6 * ray->direction, a,
+                                                             greenNm, ConnectMethod::twoStep);
+            if (published.sensor)
+                ++found;
+            else
+                ++lost;
+            if (published.sensor) CHECK((published.sensor->mm - s.mm).norm() <= 1e-6);
+            if (!published.sensor) CHECK(published.status != ConnectStatus::found);
+        }
+    }
+    // Halfway out to the image circle most are found, and not all.
+    CHECK(found > 400);
+    CHECK(lost > 0);
+}
+
 TEST_CASE("TracedLens: wide open, where beams fold or miss the rear, rays are found as they were") {
     // The stop of the 220° fisheye is no f-stop as tabulated: the rim of its aperture folds. Nor
     // is the anamorphic zoom's: at its rim no ray leaves the sensor's centre, where a solve that

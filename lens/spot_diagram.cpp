@@ -1,6 +1,7 @@
 #include "lens/spot_diagram.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace etendue {
@@ -20,21 +21,28 @@ std::vector<Eigen::Vector2d> spotDiagram(const LensModel& lens, const Eigen::Vec
                                          double wavelengthNm,
                                          std::span<const AperturePoint> apertures) {
     std::vector<Eigen::Vector2d> points;
-    for (const AperturePoint& aperture : apertures)
-        if (const auto sensor = lens.connect(targetMm, aperture, wavelengthNm))
-            points.push_back(sensor->mm);
+    const Eigen::Vector2d none =
+        Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+    for (const AperturePoint& aperture : apertures) {
+        const auto sensor = lens.connect(targetMm, aperture, wavelengthNm);
+        points.push_back(sensor ? sensor->mm : none);
+    }
     return points;
 }
 
 SpotSize spotSize(std::span<const Eigen::Vector2d> pointsMm) {
     SpotSize size;
-    if (pointsMm.empty()) return size;
-    const double count = static_cast<double>(pointsMm.size());
-    for (const Eigen::Vector2d& point : pointsMm) size.centroidMm += point / count;
+    for (const Eigen::Vector2d& point : pointsMm)
+        if (point.allFinite()) {
+            size.centroidMm += point;
+            ++size.points;
+        }
+    if (size.points == 0) return size;
+    size.centroidMm /= size.points;
     double squares = 0.0;
     for (const Eigen::Vector2d& point : pointsMm)
-        squares += (point - size.centroidMm).squaredNorm();
-    size.rmsRadiusMm = std::sqrt(squares / count);
+        if (point.allFinite()) squares += (point - size.centroidMm).squaredNorm();
+    size.rmsRadiusMm = std::sqrt(squares / size.points);
     return size;
 }
 

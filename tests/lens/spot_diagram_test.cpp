@@ -42,7 +42,16 @@ TEST_CASE("spotDiagram: out of focus the spot is the aperture, scaled") {
     CHECK(spotSize(points).centroidMm.norm() < 1e-3 * blur);
 }
 
-TEST_CASE("spotSize: of nothing it is nothing") { CHECK(spotSize({}).rmsRadiusMm == 0.0); }
+TEST_CASE("spotDiagram: a ray that does not pass is no number and counts for nothing") {
+    const auto lens = makeThinLens(50.0, 2000.0, 10.0);
+    const std::vector<AperturePoint> apertures{{{0.0, 0.0}}, {{11.0, 0.0}}, {{0.0, 5.0}}};
+    const auto points = spotDiagram(*lens, {0.0, 0.0, 2000.0}, 550.0, apertures);
+    REQUIRE(points.size() == 3);
+    CHECK(points[0].allFinite());
+    CHECK_FALSE(points[1].allFinite());
+    CHECK(spotSize(points).points == 2);
+    CHECK(spotSize({}).rmsRadiusMm == 0.0);
+}
 
 }  // namespace
 }  // namespace etendue

@@ -10,6 +10,7 @@
 #include "tools/lens_draw.h"
 #include "tools/lens_fit_command.h"
 #include "tools/lens_info.h"
+#include "tools/lens_report.h"
 
 namespace etendue {
 
@@ -141,6 +142,20 @@ void addFit(CLI::App& lens, Chosen& chosen) {
     runWhenChosen(fit, chosen, command, runLensFit);
 }
 
+void addReport(CLI::App& lens, Chosen& chosen) {
+    const auto command = std::make_shared<LensReportCommand>();
+    CLI::App* report = lens.add_subcommand(
+        "report",
+        "Write a page about a lens and its fit: spots, distortion, light, colour, errors");
+    addLens(report, command->choice);
+    addFitOptions(report, command->options);
+    report->add_option("-o,--output", command->folder, "Gets index.html and report.json")
+        ->required()
+        ->type_name("FOLDER");
+    addJson(report, command->asJson);
+    runWhenChosen(report, chosen, command, runLensReport);
+}
+
 void addCodegen(CLI::App& lens, Chosen& chosen) {
     const auto command = std::make_shared<LensCodegenCommand>();
     CLI::App* codegen = lens.add_subcommand(
@@ -163,7 +178,7 @@ void addCodegen(CLI::App& lens, Chosen& chosen) {
 void addLensCommands(CLI::App& app, Chosen& chosen) {
     CLI::App* lens = app.add_subcommand("lens", "Look at a lens, draw it, fit polynomials to it");
     lens->require_subcommand(1);
-    for (const auto add : {addInfo, addDraw, addFit, addCodegen}) add(*lens, chosen);
+    for (const auto add : {addInfo, addDraw, addFit, addReport, addCodegen}) add(*lens, chosen);
 }
 
 }  // namespace etendue

@@ -53,6 +53,8 @@ svg .rule{stroke:#7b8794;stroke-width:1}
 svg .grid{stroke:#e4e7eb;stroke-width:1}
 svg .thin{stroke-width:.8}
 svg .heavy{stroke-width:2.4}
+svg .frame{fill:none;stroke:#cbd2d9}
+svg .dots{stroke-width:2}
 svg .dashed{stroke-dasharray:5 4}
 svg .glass{fill:#3f86c7;stroke:none}
 svg .metal{fill:#1f2933;stroke:none}
@@ -103,6 +105,13 @@ void Svg::rectangle(Eigen::Vector2d corner, Eigen::Vector2d size, std::string_vi
 
 void Svg::cell(Eigen::Vector2d corner, Eigen::Vector2d size, std::string_view colour) {
     body_ += rectangleOf(corner, size) + fmt::format(" fill=\"{}\"/>\n", colour);
+}
+
+void Svg::dots(std::span<const Eigen::Vector2d> centres, std::string_view classes) {
+    std::string data;
+    for (const Eigen::Vector2d& centre : centres)
+        if (centre.allFinite()) data += "M" + pair(centre) + "h0";  // a line's round ends
+    body_ += fmt::format("<path class=\"dots {}\" d=\"{}\"/>\n", classes, data);
 }
 
 void Svg::circle(Eigen::Vector2d centre, double radius, std::string_view classes) {

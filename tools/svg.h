@@ -13,7 +13,7 @@
 namespace etendue {
 
 /// Classes: ink, faint, rule, grid (lines); fill-ink, muted (texts); glass, metal, paper (areas);
-/// c0 … c5 (lines of a series), f0 … f5 (the same colours to fill); dashed, thin, heavy; bold.
+/// c0 … c5 (lines of a series), f0 … f5 (the same colours to fill); frame, dashed, thin, heavy; bold.
 std::string_view svgStyle();
 constexpr int svgSeriesColours = 6;
 
@@ -37,6 +37,8 @@ public:
     void rectangle(Eigen::Vector2d corner, Eigen::Vector2d size, std::string_view classes);
     /// `colour` as in CSS: for maps, whose colours mean numbers.
     void cell(Eigen::Vector2d corner, Eigen::Vector2d size, std::string_view colour);
+    /// Small dots in the colour of a line's class; those that are not finite are left out.
+    void dots(std::span<const Eigen::Vector2d> centres, std::string_view classes);
     void circle(Eigen::Vector2d centre, double radius, std::string_view classes);
     void text(Eigen::Vector2d at, std::string_view text, TextAnchor anchor = TextAnchor::start,
               std::string_view classes = "", double turnedByDegrees = 0.0);

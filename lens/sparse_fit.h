@@ -6,6 +6,7 @@
 // least squares").
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "lens/polynomial_basis.h"
@@ -15,6 +16,8 @@ namespace etendue {
 struct SparseFitOptions {
     int terms = 40;       // of each group; all candidates if not fewer
     int refinements = 3;  // times a quarter more terms are taken and the least useful dropped again
+    /// Hears which share of the work is done, on the calling thread, now and then.
+    std::function<void(double share)> progress = {};
 };
 
 /// The polynomial with at most `options.terms` terms per group of `candidates` that comes nearest

@@ -134,6 +134,37 @@ TEST_CASE("Sparse fit: exchanging terms never makes the fit worse, more terms ma
     }
 }
 
+TEST_CASE("Sparse fit: what the greedy choice took wrongly is exchanged") {
+    const std::vector<PolynomialInput> inputs = someInputs(600);
+    const OutputCount outputs{0, 1};
+    const InputScaling scaling = scalingFor(PolynomialBasis::none, inputs, Coupling::none);
+    const Exponents first{1, 0, 0, 0, 0}, third{3, 0, 0, 0, 0}, fifth{5, 0, 0, 0, 0};
+    // x³ looks more like x + 2x⁵ than either of its terms does.
+    SparsePolynomial truth{PolynomialBasis::none, outputs, scaling, {{{0}, {first, fifth}, {}}}};
+    truth.groups.front().coefficients = Eigen::RowVector2d(1.0, 2.0);
+    const auto fit = [&](int refinements) {
+        return fitSparse(PolynomialBasis::none, outputs, {{{0}, {first, third, fifth}, {}}},
+                         scaling, inputs, valuesOf(truth, inputs), Eigen::VectorXd::Ones(1),
+                         {2, refinements});
+    };
+    CHECK(fit(0).groups.front().terms.front() == third);
+    std::vector<Exponents> found = fit(1).groups.front().terms;
+    std::ranges::sort(found);
+    CHECK(found == truth.groups.front().terms);
+}
+
+TEST_CASE("Sparse fit: progress grows to the end") {
+    double last = 0.0;
+    SparseFitOptions options{10, 2};
+    options.progress = [&](double share) {
+        CHECK(share >= last);
+        CHECK(share <= 1.0);
+        last = share;
+    };
+    fitSmooth(PolynomialBasis::twoPlane, someInputs(400), options, 5);
+    CHECK(last > 0.5);
+}
+
 TEST_CASE("Sparse fit: the same inputs give the same bits") {
     const std::vector<PolynomialInput> inputs = someInputs(700);
     const SparsePolynomial once = fitSmooth(PolynomialBasis::axial, inputs, {12, 3});

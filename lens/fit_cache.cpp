@@ -38,7 +38,8 @@ std::filesystem::path fitCacheFile(const std::filesystem::path& directory, const
 
 LensFit cachedFit(const Prescription& prescription, const FitDomain& domain,
                   const FitSettings& settings, const std::filesystem::path& directory,
-                  const std::function<void(const std::string&)>& notice) {
+                  const std::function<void(const std::string&)>& notice,
+                  const FitProgress& progress) {
     const auto tell = [&](const std::string& sentence) {
         if (notice) notice(sentence);
     };
@@ -51,7 +52,7 @@ LensFit cachedFit(const Prescription& prescription, const FitDomain& domain,
         tell(content.refusal + "; it is fitted again");
     }
     tell("fitting " + prescription.name);
-    LensFit fit = fitLens(prescription, domain, settings);
+    LensFit fit = fitLens(prescription, domain, settings, progress);
     if (directory.empty()) return fit;
     try {
         std::filesystem::create_directories(directory, failed);

@@ -16,9 +16,11 @@ std::filesystem::path fitCacheDirectory();
 std::filesystem::path fitCacheFile(const std::filesystem::path& directory, const FitKey& key);
 
 /// The fit from `directory`, else a new one, which is then kept there. `notice` hears in a sentence
-/// what takes time or went wrong: a file refused, a fit begun, a fit that could not be kept.
+/// what takes time or went wrong: a file refused, a fit begun, a fit that could not be kept;
+/// `progress` how far the fit is.
 LensFit cachedFit(const Prescription& prescription, const FitDomain& domain,
                   const FitSettings& settings, const std::filesystem::path& directory,
-                  const std::function<void(const std::string&)>& notice = {});
+                  const std::function<void(const std::string&)>& notice = {},
+                  const FitProgress& progress = {});
 
 }  // namespace etendue

@@ -105,7 +105,11 @@ ErrorSummary summarize(std::vector<double> magnitudes) {
 }
 
 LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
-                const FitSettings& settings) {
+                const FitSettings& settings, const FitProgress& progress) {
+    const auto tell = [&](double share, std::string_view stage) {
+        if (progress) progress(share, stage);
+    };
+    tell(0.0, "tracing rays");
     const TracedLens lens = lensOf(prescription, domain);
     const PupilSphere sphere(lens.system());
     LensFit fit;
@@ -127,23 +131,34 @@ LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
         settings.form == FitForm::sensorState || settings.basis != PolynomialBasis::axial;
     const InputScaling scaling =
         scalingFor(settings.basis, inputs, related ? Coupling::fitted : Coupling::none);
-    const SparseFitOptions options{settings.terms, settings.refinements};
+    const bool isSensorState = settings.form == FitForm::sensorState;
+    // About how the time is spent.
+    constexpr double begin = 0.1, end = 0.7;
+    const double half = isSensorState ? 0.5 * (begin + end) : end;
+    const auto optionsFor = [&](double from, double to) {
+        return SparseFitOptions{settings.terms, settings.refinements, [=, &tell](double share) {
+                                    tell(from + share * (to - from), "choosing terms");
+                                }};
+    };
     const MatrixXd targets = exitTargets(training.rays, settings.form);
     fit.exit = fitSparse(settings.basis, exitOutputs, candidates, scaling, inputs, targets,
-                         exitTolerances(targets), options);
+                         exitTolerances(targets), optionsFor(begin, half));
     fit.exit =
         refit(fit.exit, inputs, atFittedPosition(fit.exit, training.rays, inputs, sphere, targets));
-    if (settings.form == FitForm::sensorState) {
+    if (isSensorState) {
         const MatrixXd apertures = apertureTargets(training.rays);
         fit.aperture =
             fitSparse(settings.basis, apertureOutputs,
                       candidateTerms(settings.basis, settings.degree, apertureOutputs), scaling,
-                      inputs, apertures, apertureTolerances(apertures), options);
+                      inputs, apertures, apertureTolerances(apertures), optionsFor(half, end));
     }
     fit.start = fitConnectStart(training.rays, !isAnamorphic(prescription));
+    tell(end, "fitting the rims");
     fit.clip = fitClip(lens, domain, settings.basis, settings.clip);
+    tell(0.8, "measuring errors");
     fit.errors = measureErrors(fit, lens, 10'000, heldOutSeed);
     fit.clipErrors = measureClip(fit.clip, lens, domain, 20'000, heldOutSeed);
+    tell(1.0, "done");
     return fit;
 }
 

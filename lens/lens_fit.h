@@ -1,6 +1,9 @@
 // LensFit: a lens as polynomials, fitted to its exact trace (docs/fitting).
 #pragma once
 
+#include <functional>
+#include <string_view>
+
 #include "lens/connect_start.h"
 #include "lens/fit_rays.h"
 #include "lens/lens_clip.h"
@@ -56,10 +59,13 @@ struct LensFit {
     ClipErrors clipErrors;
 };
 
+/// Hears which share of a fit is done, in 0–1, and what is being done; on the calling thread.
+using FitProgress = std::function<void(double share, std::string_view stage)>;
+
 /// `settings.raysPerCandidate` rays per candidate monomial, at least 4000 and at most 100,000.
 /// Deterministic. Throws std::invalid_argument where no ray passes.
 LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
-                const FitSettings& settings);
+                const FitSettings& settings, const FitProgress& progress = {});
 
 FitErrors measureErrors(const LensFit& fit, const TracedLens& lens, std::size_t rays,
                         std::uint64_t seed);

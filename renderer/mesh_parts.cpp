@@ -1,4 +1,5 @@
 // [[mesh]] and [[instance]]: which triangles stand where, made of what.
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -97,7 +98,10 @@ DressedMesh addMesh(Mesh mesh, std::vector<const Material*> materials, LoadingSc
 DressedMesh addModelFile(const std::filesystem::path& file, LoadingScene& loading) {
     ObjModel model = loadObj(file);
     loading.files.insert(loading.files.end(), model.files.begin(), model.files.end());
-    for (const std::string& note : model.notes) loading.notes.push_back(note);
+    // A file that is used twice has the same to say twice.
+    for (const std::string& note : model.notes)
+        if (std::find(loading.notes.begin(), loading.notes.end(), note) == loading.notes.end())
+            loading.notes.push_back(note);
     std::vector<const Material*> slots = dress(model.mesh, model.materials, loading);
     return addMesh(std::move(model.mesh), std::move(slots), loading);
 }

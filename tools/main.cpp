@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <map>
+#include <stdexcept>
 
 #include "tools/lens_command.h"
 #include "tools/render_command.h"
@@ -35,6 +38,22 @@ std::string joinArguments(int argc, char** argv) {
     return line;
 }
 
+/// Accepts what the C++ library reads as a `T` from first to last character, and `isGood` likes.
+template <class T>
+CLI::Validator numberThat(bool (*isGood)(T), const std::string& expected) {
+    return CLI::Validator(
+        [=](const std::string& text) {
+            T value{};
+            const char* end = text.data() + text.size();
+            const auto [rest, error] = std::from_chars(text.data(), end, value);
+            const bool isNumber = error == std::errc() && rest == end;
+            return isNumber && isGood(value)
+                       ? std::string()
+                       : fmt::format("expected {}, got \"{}\"", expected, text);
+        },
+        "");
+}
+
 void addOverrides(CLI::App* command, std::vector<std::string>& overrides) {
     command->add_option("-s,--set", overrides, "Override any key of the scene; may be repeated")
         ->allow_extra_args(false)
@@ -50,6 +69,8 @@ void addRender(CLI::App& app, RenderCommand& c) {
         ->type_name("FILE");
     render->add_option("--preview", c.preview, "Also write an sRGB PNG")->type_name("FILE");
     render->add_option("--exposure", c.previewExposureStops, "Added to the PNG, not to the EXR")
+        ->check(numberThat<double>([](double v) { return v >= -100.0 && v <= 100.0; },
+                                   "a number from -100 to 100"))
         ->type_name("STOPS");
     render->add_option("--samples", c.samples, "Per pixel; default: the scene's estimator.samples")
         ->check(CLI::Range(1, 1 << 30).description(""))
@@ -57,9 +78,12 @@ void addRender(CLI::App& app, RenderCommand& c) {
     render
         ->add_option("--time", c.timeLimitSeconds,
                      "Stop after about so long; without --samples, whatever the scene says")
-        ->check(CLI::PositiveNumber)
+        ->check(numberThat<double>([](double v) { return v > 0.0; }, "a number above 0"))
         ->type_name("SECONDS");
-    render->add_option("--seed", c.seed, "Of the random numbers; default 0")->type_name("N");
+    render->add_option("--seed", c.seed, "Of the random numbers; default 0")
+        ->check(numberThat<std::uint64_t>([](std::uint64_t) { return true; },
+                                          "a whole number from 0 to 2^64 - 1"))
+        ->type_name("N");
     render->add_option("--threads", c.threads, "Default: one for each processor")
         ->check(CLI::Range(1, 1024).description(""))
         ->type_name("N");
@@ -83,8 +107,18 @@ void addRender(CLI::App& app, RenderCommand& c) {
                                                       {"bar", ProgressStyle::bar},
                                                       {"lines", ProgressStyle::lines},
                                                       {"json", ProgressStyle::json}};
-    render->add_option("--progress", c.progress, "auto, bar, lines or json (one object a line)")
-        ->transform(CLI::CheckedTransformer(styles).description(""))
+    render
+        ->add_option_function<std::string>(
+            "--progress",
+            [&c, styles](const std::string& name) {
+                const auto found = styles.find(name);
+                if (found == styles.end())
+                    throw CLI::ValidationError(
+                        "--progress",
+                        fmt::format("expected auto, bar, lines or json, got \"{}\"", name));
+                c.progress = found->second;
+            },
+            "auto, bar, lines or json (one object a line)")
         ->type_name("STYLE");
     render->add_flag_callback(
         "--quiet", [&c] { c.progress = ProgressStyle::quiet; }, "Print nothing but errors");
@@ -129,16 +163,22 @@ ExitCode run(int argc, char** argv) {
 }  // namespace etendue
 
 int main(int argc, char** argv) {
-    using etendue::ExitCode;
+    using etendue::ExitCode, etendue::say;
+    // A limit on file sizes and a reader that has gone are errors of a write, with a message, and
+    // no reason to be killed in the middle of one.
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
     try {
-        return static_cast<int>(etendue::run(argc, argv));
+        const ExitCode code = etendue::run(argc, argv);
+        if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
+        return static_cast<int>(code);
     } catch (const etendue::InputError& error) {
-        fmt::print(stderr, "etendue: {}\n", error.what());
+        say(fmt::format("etendue: {}\n", error.what()));
         return static_cast<int>(error.code());
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "etendue: out of memory\n");
+        say("etendue: out of memory\n");
     } catch (const std::exception& error) {
-        fmt::print(stderr, "etendue: {}\n", error.what());
+        say(fmt::format("etendue: {}\n", error.what()));
     }
     return static_cast<int>(ExitCode::failure);
 }

@@ -42,6 +42,11 @@ std::string formatDuration(double seconds) {
     return fmt::format("{}:{:02}:{:02}", total / 3600, total / 60 % 60, total % 60);
 }
 
+void say(const std::string& text) {
+    std::fputs(text.c_str(), stderr);
+    std::fflush(stderr);
+}
+
 Progress::Progress(ProgressStyle style) : style_(style) {
     if (style_ == ProgressStyle::automatic)
         style_ = isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::lines;
@@ -49,7 +54,8 @@ Progress::Progress(ProgressStyle style) : style_(style) {
 
 void Progress::update(const RenderProgress& progress) {
     const double interval = style_ == ProgressStyle::lines ? 10.0 : 0.1;
-    if (progress.seconds - lastSeconds_ < interval) return;
+    // The last one is for finish() to report.
+    if (progress.fractionDone >= 1.0 || progress.seconds - lastSeconds_ < interval) return;
     lastSeconds_ = progress.seconds;
     write(progress, false);
 }
@@ -62,23 +68,21 @@ void Progress::write(const RenderProgress& p, bool isLast) {
         case ProgressStyle::automatic:
             return;
         case ProgressStyle::json:
-            fmt::print(
-                stderr,
+            say(fmt::format(
                 "{{\"samples\":{},\"target\":{},\"seconds\":{:.3f},\"samples_per_second\":{:.0f},"
                 "\"eta_seconds\":{:.3f},\"done\":{}}}\n",
                 p.samplesDone, p.samplesTarget, p.seconds, p.cameraSamplesPerSecond,
-                isLast ? 0.0 : secondsLeft(p), isLast);
+                isLast ? 0.0 : secondsLeft(p), isLast));
             return;
         case ProgressStyle::lines:
-            fmt::print(stderr, "{}\n", describe(p, isLast));
+            say(describe(p, isLast) + "\n");
             return;
         case ProgressStyle::bar: {
             const int filled = static_cast<int>(p.fractionDone * barWidth);
             const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                                     std::string(static_cast<std::size_t>(barWidth - filled), '.');
             // Erase to the end of the line: a shorter line follows a longer one.
-            fmt::print(stderr, "\r[{}] {}\033[K{}", bar, describe(p, isLast), isLast ? "\n" : "");
-            std::fflush(stderr);
+            say(fmt::format("\r[{}] {}\033[K{}", bar, describe(p, isLast), isLast ? "\n" : ""));
             return;
         }
     }

@@ -22,6 +22,9 @@ private:
     double lastSeconds_ = -1e9;
 };
 
+/// To standard error, at once. If nobody can read it that is no reason to lose a render.
+void say(const std::string& text);
+
 /// "1:02:03", "2:03" or "4.2 s".
 std::string formatDuration(double seconds);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <csignal>
 
 #include "renderer/parallel.h"
@@ -93,22 +94,20 @@ Metadata metadataFor(const RenderCommand& command, const LoadedScene& loaded,
 /// What is wrong with the picture, said aloud: nothing is left out in silence.
 void reportDefects(const RenderCommand& command, const RenderResult& result) {
     if (result.badSampleCount > 0) {
-        fmt::print(
-            stderr,
+        say(fmt::format(
             "etendue: {} samples were not finite or negative and were left out; the first:\n",
-            result.badSampleCount);
+            result.badSampleCount));
         for (const BadSample& b : result.badSamples)
-            fmt::print(stderr, "  seed {} pixel {},{} sample {}\n", command.seed, b.x, b.y,
-                       b.sample);
+            say(fmt::format("  seed {} pixel {},{} sample {}\n", command.seed, b.x, b.y, b.sample));
     }
     if (result.refusedRays > 0)
-        fmt::print(stderr, "etendue: {} rays had no finite place in the scene and met nothing\n",
-                   result.refusedRays);
+        say(fmt::format("etendue: {} rays had no finite place in the scene and met nothing\n",
+                        result.refusedRays));
 }
 
 void printNotes(const LoadedScene& loaded, bool isQuiet) {
     if (isQuiet) return;
-    for (const std::string& note : loaded.notes) fmt::print(stderr, "note: {}\n", note);
+    for (const std::string& note : loaded.notes) say(fmt::format("note: {}\n", note));
 }
 
 LoadOptions loadOptions(const RenderCommand& command, int threads) {
@@ -130,9 +129,20 @@ void writePictures(const RenderCommand& command, const LoadedScene& loaded, cons
             srgbBytes(channels.front().pixels, static_cast<float>(command.previewExposureStops)));
 }
 
+/// A picture's format does not follow its name; a name that promises another one would mislead.
+void checkExtension(const std::filesystem::path& file, const std::string& expected) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (!extension.empty() && extension != expected)
+        throw InputError(
+            fmt::format("{}: this picture is written as {}", file.string(), expected.substr(1)),
+            ExitCode::usage);
+}
+
 /// Better now than after hours of rendering.
-void checkWritable(const std::filesystem::path& file) {
+void checkWritable(const std::filesystem::path& file, const std::string& extension) {
     if (file.empty()) return;
+    checkExtension(file, extension);
     std::filesystem::path folder = file.parent_path();
     if (folder.empty()) folder = ".";
     std::error_code error;
@@ -146,8 +156,8 @@ void checkWritable(const std::filesystem::path& file) {
 
 ExitCode runRender(const RenderCommand& command) {
     const bool isQuiet = command.progress == ProgressStyle::quiet;
-    checkWritable(command.output);
-    checkWritable(command.preview);
+    checkWritable(command.output, ".exr");
+    checkWritable(command.preview, ".png");
     const int threads = command.threads.value_or(hardwareThreads());
     const LoadedScene loaded = loadScene(command.scene, loadOptions(command, threads));
     printNotes(loaded, isQuiet);
@@ -177,8 +187,8 @@ ExitCode runRender(const RenderCommand& command) {
     reportDefects(command, result);
     writePictures(command, loaded, film, result);
     if (result.wasInterrupted && !isQuiet)
-        fmt::print(stderr, "stopped early: {} of {} samples per pixel are in the picture\n",
-                   result.samples, settings.samples);
+        say(fmt::format("stopped early: {} of {} samples per pixel are in the picture\n",
+                        result.samples, settings.samples));
     return result.wasInterrupted ? ExitCode::stoppedEarly : ExitCode::success;
 }
 

@@ -25,7 +25,39 @@ TEST_CASE("Command: --help teaches, --version names, no command is wrong usage")
     CHECK(run("").code == 64);
     CHECK(run("rendr x").code == 64);
     CHECK(run("render").code == 64);
-    CHECK(run("render a.toml -o b.exr --samples 0").code == 64);
+}
+
+TEST_CASE("Command: an option that makes no sense is wrong usage, in one clear line") {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("s.toml", smallScene).string();
+    const std::string out = (folder.path() / "o.exr").string();
+    const std::vector<std::pair<const char*, const char*>> cases{
+        {"--samples 0", "--samples"},
+        {"--samples 1.5", "--samples"},
+        {"--threads 0", "--threads"},
+        {"--seed -1", "expected a whole number"},
+        {"--seed 18446744073709551616", "expected a whole number"},
+        {"--seed 3x", "expected a whole number"},
+        {"--time 0", "expected a number above 0"},
+        {"--time nan", "expected a number above 0"},
+        {"--time -1", "expected a number above 0"},
+        {"--exposure nan", "expected a number from -100 to 100"},
+        {"--progress loud", "expected auto, bar, lines or json"},
+        {"--layers depht", "depht"},
+        {"--size 64", "--size"},
+        {"--crop 0,0,0,0", "--crop"},
+        {"--preview p.jpg", "written as png"},
+        {"-o p.png", "-o"},
+    };
+    for (const auto& [option, message] : cases) {
+        CAPTURE(option);
+        const Outcome outcome = run("render " + scene + " -o " + out + " " + option);
+        CHECK(outcome.code == 64);
+        CHECK(contains(outcome.output, message));
+        CHECK_FALSE(std::filesystem::exists(out));
+    }
+    CHECK(run("render " + scene + " -o " + (folder.path() / "o.png").string()).code == 64);
+    CHECK(run("render " + scene + " -o " + out + " --quiet --seed 18446744073709551615").code == 0);
 }
 
 TEST_CASE("Command: render writes the EXR and the preview, and says nothing when quiet") {
@@ -64,6 +96,9 @@ TEST_CASE("Command: progress for machines is one JSON object a line") {
     CHECK(outcome.code == 0);
     CHECK(contains(outcome.output, "\"done\":true"));
     CHECK(contains(outcome.output, "\"samples\":2"));
+    // The end is told once.
+    const std::size_t first = outcome.output.find("\"samples\":2,");
+    CHECK(outcome.output.find("\"samples\":2,", first + 1) == std::string::npos);
 }
 
 TEST_CASE("Command: bad input is 65, a missing file 66, and neither leaves a picture") {
@@ -110,18 +145,58 @@ TEST_CASE("Command: check reports what is in a scene and renders nothing") {
     CHECK(run("check " + folder.write("b.toml", "[film]\nwidth = -1\n").string()).code == 65);
 }
 
-TEST_CASE(
-    "Command: a time limit ends the render with success, an interrupt with 75 and a valid "
-    "picture") {
+TEST_CASE("Command: a time limit ends the render with success") {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", smallScene).string();
     const std::string out = (folder.path() / "o.exr").string();
     CHECK(run("render " + scene + " -o " + out + " --samples 100000000 --time 0.3 --quiet").code ==
           0);
-    std::filesystem::remove(out);
-    const std::string interrupted = "timeout --preserve-status -s INT 1 " +
-                                    std::string(ETENDUE_COMMAND) + " render " + scene + " -o " +
-                                    out + " --samples 100000000 --quiet";
-    CHECK(WEXITSTATUS(std::system(interrupted.c_str())) == 75);
-    CHECK(std::filesystem::file_size(out) > 500);
+}
+
+TEST_CASE("Command: a signal ends the render with 75 and a valid picture") {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("s.toml", smallScene).string();
+    for (const std::string signal : {"INT", "TERM"}) {
+        const std::string out = (folder.path() / (signal + ".exr")).string();
+        const std::string progress = (folder.path() / (signal + ".txt")).string();
+        // Sent as soon as the render has begun to report.
+        const std::string line = "render " + scene + " -o " + out +
+                                 " --samples 100000000 --progress json 2> " + progress +
+                                 " & pid=$!; until [ -s " + progress +
+                                 " ]; do sleep 0.02; done; kill -" + signal + " $pid; wait $pid";
+        CHECK(run(line).code == 75);
+        CHECK(contains(readFile(progress), "stopped early"));
+        CHECK(std::filesystem::file_size(out) > 500);
+    }
+}
+
+TEST_CASE("Command: a limit on file sizes is an error that leaves no part of a picture") {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("s.toml", smallScene).string();
+    // 128 × 96 pixels of noise, 12 bytes each, do not fit into two blocks of 512.
+    const Outcome outcome = run(
+        "render " + scene + " --size 128,96 -o " + (folder.path() / "o.exr").string() + " --quiet",
+        "ulimit -f 2; ");
+    CHECK(outcome.code == 1);
+    CHECK(contains(outcome.output, "o.exr: cannot write: File too large"));
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        CHECK(entry.path().filename() == "s.toml");
+}
+
+TEST_CASE("Command: a reader that goes away is an error, not a kill") {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("s.toml", smallScene).string();
+    const std::string code = (folder.path() / "code").string();
+    // The reader has gone before the command begins to write.
+    const std::string line = "( sleep 0.3; " + std::string(ETENDUE_COMMAND) + " check " + scene +
+                             " 2>/dev/null; echo $? > " + code + " ) | true";
+    REQUIRE(std::system(line.c_str()) == 0);
+    CHECK(readFile(code) == "1\n");
+    const std::string check = std::string(ETENDUE_COMMAND) + " check " + scene;
+    CHECK(WEXITSTATUS(std::system((check + " > /dev/full 2>&1").c_str())) == 1);
+    // Progress that nobody can read costs no picture.
+    const std::string render = std::string(ETENDUE_COMMAND) + " render " + scene + " -o " +
+                               (folder.path() / "o.exr").string() + " --progress json";
+    CHECK(WEXITSTATUS(std::system((render + " 2> /dev/full").c_str())) == 0);
+    CHECK(std::filesystem::file_size(folder.path() / "o.exr") > 500);
 }

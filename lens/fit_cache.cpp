@@ -22,7 +22,7 @@ std::filesystem::path fitCacheFile(const std::filesystem::path& directory, const
     all << std::hexfloat;
     for (const double number :
          {d.sensorHalfSizeMm.x(), d.sensorHalfSizeMm.y(), d.imageRadiusMm, d.sensorDistanceMm,
-          d.apertureRadiusMm, d.shortestWavelengthNm, d.longestWavelengthNm})
+          d.apertureRadiusMm, d.shortestWavelengthNm, d.longestWavelengthNm, d.sensorTravelMm})
         all << number << ' ';
     for (const int number : {static_cast<int>(s.form), static_cast<int>(s.basis), s.terms, s.degree,
                              s.raysPerCandidate, s.refinements, s.clip.terms, s.clip.degree,

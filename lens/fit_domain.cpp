@@ -1,11 +1,31 @@
 #include "lens/fit_domain.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "lens/field.h"
 
 namespace etendue {
+
+namespace {
+
+/// Room for the rays of a sensor that is moved back to focus as near as `nearestFocusMm`: those
+/// from a corner to the exit pupil's edges.
+void extendToNear(FitDomain& domain, const TracedLens& lens, double nearestFocusMm) {
+    const ParaxialData data = paraxialData(lens.system());
+    const double travel = sensorDistanceMm(data, nearestFocusMm) - domain.sensorDistanceMm;
+    if (!(travel >= 0.0))
+        throw std::invalid_argument("lens fit: the nearest focus is beyond the farthest");
+    domain.sensorTravelMm = travel;
+    const auto spread = [&](const ParaxialAxis& axis) {
+        return travel * axis.exitPupilRadiusMm(domain.apertureRadiusMm) /
+               std::abs(axis.exitPupilZMm - lens.sensorZMm());
+    };
+    domain.sensorHalfSizeMm += Eigen::Vector2d(spread(data.x), spread(data.y));
+}
+
+}  // namespace
 
 FitDomain fitDomain(const Prescription& prescription, const DomainRequest& request) {
     constexpr double darkest = 1e-3;  // share of the illumination on the axis
@@ -25,6 +45,7 @@ FitDomain fitDomain(const Prescription& prescription, const DomainRequest& reque
     domain.apertureRadiusMm = lens->system().aperture.radiusMm();
     domain.shortestWavelengthNm = request.shortestWavelengthNm;
     domain.longestWavelengthNm = request.longestWavelengthNm;
+    if (request.nearestFocusMm) extendToNear(domain, *lens, *request.nearestFocusMm);
     const double reach = std::max(imageHeightMm(*lens, Eigen::Vector2d::UnitX(), darkest),
                                   imageHeightMm(*lens, Eigen::Vector2d::UnitY(), darkest));
     if (reach < domain.sensorHalfSizeMm.norm()) domain.imageRadiusMm = reach;

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* formatName = "etendue lens fit 2";
+constexpr const char* formatName = "etendue lens fit 3";
 constexpr std::uintmax_t largestFileBytes = 64u << 20;
 
 struct Refusal : std::runtime_error {
@@ -59,7 +59,8 @@ Json jsonOf(const FitDomain& d) {
             {"image_radius_mm", jsonOf(d.imageRadiusMm)},
             {"sensor_distance_mm", d.sensorDistanceMm},
             {"aperture_radius_mm", d.apertureRadiusMm},
-            {"wavelengths_nm", Json::array({d.shortestWavelengthNm, d.longestWavelengthNm})}};
+            {"wavelengths_nm", Json::array({d.shortestWavelengthNm, d.longestWavelengthNm})},
+            {"sensor_travel_mm", d.sensorTravelMm}};
 }
 FitDomain domainFrom(const Json& json) {
     const Eigen::Vector2d wavelengths = vectorFrom(json.at("wavelengths_nm"));
@@ -68,7 +69,8 @@ FitDomain domainFrom(const Json& json) {
             json.at("sensor_distance_mm").get<double>(),
             json.at("aperture_radius_mm").get<double>(),
             wavelengths.x(),
-            wavelengths.y()};
+            wavelengths.y(),
+            json.at("sensor_travel_mm").get<double>()};
 }
 
 Json jsonOf(const FitSettings& s) {
@@ -206,6 +208,7 @@ Json jsonOf(const LensFit& fit) {
              {{"sensor", jsonOf(fit.start.sensor)},
               {"widest_field", fit.start.widestField},
               {"error_mm", fit.start.errorMm}}},
+            {"slope", jsonOf(fit.slope)},
             {"training", jsonOf(fit.training)},
             {"errors", jsonOf(fit.errors)}};
 }
@@ -227,6 +230,7 @@ LensFit fitFrom(const Json& json) {
     const Json& start = json.at("start");
     fit.start = {polynomialFrom(start.at("sensor")), start.at("widest_field").get<double>(),
                  start.at("error_mm").get<double>()};
+    fit.slope = polynomialFrom(json.at("slope"));
     fit.training = countsFrom(json.at("training"));
     fit.errors = errorsFrom(json.at("errors"));
     return fit;

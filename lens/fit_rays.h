@@ -16,6 +16,7 @@ struct FitDomain {
     double sensorDistanceMm;                                         // behind the last vertex
     double apertureRadiusMm;                                         // the widest
     double shortestWavelengthNm = 400.0, longestWavelengthNm = 700.0;
+    double sensorTravelMm = 0.0;  // how much farther back it may be moved (refocused_lens.h)
 
     bool operator==(const FitDomain&) const = default;
     /// Its rims included.

@@ -1,5 +1,7 @@
 #include "lens/fitted_map.h"
 
+#include "lens/density.h"
+
 namespace etendue {
 
 namespace {
@@ -79,13 +81,11 @@ std::optional<ExitRay> FittedMap::sensorStateRay(SensorPoint sensor, AperturePoi
     const PolynomialInput input{sensor.mm, *slope, wavelengthNm};
     const PolynomialResult<double> stop = apertureMap_->evaluate(input), at = exit_.evaluate(input);
     const Eigen::Matrix2d bySlope = block<2>(stop, 2);
-    const double determinant = bySlope.determinant();
     const Eigen::Vector2d& paraxial = paraxialStopMap_.bySlope;
-    if (!(determinant * paraxial.x() * paraxial.y() > 0.0)) return {};
-    const Eigen::Matrix2d k = -bySlope.inverse() * block<2>(stop, 0);  // ∂q/∂s at fixed a
-    const double cosSquared = 1.0 / (1.0 + slope->squaredNorm());
-    const double j = cosSquared * cosSquared / std::abs(determinant);
-    return exitRayOf(sphere_, at.values, block<4>(at, 0) + block<4>(at, 2) * k, j * at.values[4]);
+    if (!(bySlope.determinant() * paraxial.x() * paraxial.y() > 0.0)) return {};
+    const Eigen::Matrix2d k = slopeBySensor(bySlope, block<2>(stop, 0));
+    return exitRayOf(sphere_, at.values, block<4>(at, 0) + block<4>(at, 2) * k,
+                     exchangeJacobian(*slope, bySlope) * at.values[4]);
 }
 
 }  // namespace etendue

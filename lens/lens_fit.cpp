@@ -1,12 +1,9 @@
 #include "lens/lens_fit.h"
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "lens/parallel.h"
 #include "lens/polynomial.h"
 #include "lens/sparse_fit.h"
 
@@ -93,17 +90,6 @@ std::size_t trainingCount(const std::vector<TermGroup>& candidates, const FitSet
 
 }  // namespace
 
-ErrorSummary summarize(std::vector<double> magnitudes) {
-    if (magnitudes.empty()) return {};
-    double squares = 0.0;
-    for (const double m : magnitudes) squares += m * m;
-    std::ranges::sort(magnitudes);
-    const std::size_t rank =
-        static_cast<std::size_t>(std::ceil(0.999 * static_cast<double>(magnitudes.size())));
-    return {std::sqrt(squares / static_cast<double>(magnitudes.size())), magnitudes[rank - 1],
-            magnitudes.back()};
-}
-
 LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
                 const FitSettings& settings, const FitProgress& progress) {
     const auto tell = [&](double share, std::string_view stage) {
@@ -153,6 +139,8 @@ LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
                       inputs, apertures, apertureTolerances(apertures), optionsFor(half, end));
     }
     fit.start = fitConnectStart(training.rays, !isAnamorphic(prescription));
+    if (domain.sensorTravelMm > 0.0)
+        fit.slope = fitSensorSlope(training.rays, !isAnamorphic(prescription));
     tell(end, "fitting the rims");
     fit.clip = fitClip(lens, domain, settings.basis, settings.clip);
     tell(0.8, "measuring errors");
@@ -160,119 +148,6 @@ LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
     fit.clipErrors = measureClip(fit.clip, lens, domain, 20'000, heldOutSeed);
     tell(1.0, "done");
     return fit;
-}
-
-namespace {
-
-struct RayErrors {
-    bool solved = false;
-    double pupilMm, directionMrad, sensorMicrometres, throughput, etendue;
-};
-
-/// The slope whose ray crosses the fitted aperture at `aperture`, from the exact one.
-std::optional<PolynomialInput> solveSlope(const PolynomialEvaluator<double>& evaluator,
-                                          const FitRay& ray, double toleranceMm) {
-    PolynomialInput input = inputOf(ray, FitForm::sensorState);
-    for (int i = 0; i < 20; ++i) {
-        const PolynomialResult<double> at = evaluator.evaluate(input);
-        const Eigen::Vector2d miss =
-            Eigen::Vector2d(at.values[0], at.values[1]) - ray.query.aperture.mm;
-        if (miss.norm() < toleranceMm) return input;
-        Eigen::Matrix2d bySlope;
-        bySlope << at.jacobian[0][2], at.jacobian[0][3], at.jacobian[1][2], at.jacobian[1][3];
-        input.p -= bySlope.inverse() * miss;
-        if (!input.p.allFinite()) return {};
-    }
-    return {};
-}
-
-/// Of the outputs `row` and `row + 1`: by s (column 0) or by p (column 2).
-Eigen::Matrix2d block(const PolynomialResult<double>& result, std::size_t row, std::size_t column) {
-    Eigen::Matrix2d m;
-    m << result.jacobian[row][column], result.jacobian[row][column + 1],
-        result.jacobian[row + 1][column], result.jacobian[row + 1][column + 1];
-    return m;
-}
-
-}  // namespace
-
-FitErrors measureErrors(const LensFit& fit, const TracedLens& lens, std::size_t rays,
-                        std::uint64_t seed) {
-    const bool twoPoint = fit.settings.form == FitForm::twoPoint;
-    const PupilSphere sphere(lens.system());
-    const PolynomialEvaluator<double> exit(fit.exit);
-    const PolynomialEvaluator<double> aperture(twoPoint ? fit.exit : fit.aperture);
-    const FitRays heldOut = drawFitRays(lens, fit.domain, rays, seed);
-    double brightness = 0.0;
-    for (const FitRay& ray : heldOut.rays)
-        brightness += ray.throughput / static_cast<double>(heldOut.rays.size());
-
-    std::vector<RayErrors> errors(heldOut.rays.size());
-    const auto measure = [&](std::size_t i) {
-        const FitRay& ray = heldOut.rays[i];
-        RayErrors& error = errors[i];
-        PolynomialInput input = inputOf(ray, fit.settings.form);
-        Eigen::Matrix2d slopeByAperture = Eigen::Matrix2d::Zero(), slopeBySensor = slopeByAperture;
-        double j = 1.0;
-        if (!twoPoint) {
-            const auto solved = solveSlope(aperture, ray, 1e-9 * fit.domain.apertureRadiusMm);
-            if (!solved) return;
-            input = *solved;
-            const PolynomialResult<double> at = aperture.evaluate(input);
-            slopeByAperture = block(at, 0, 2).inverse();
-            slopeBySensor = -slopeByAperture * block(at, 0, 0);
-            const double cosSquared = 1.0 / (1.0 + input.p.squaredNorm());
-            j = cosSquared * cosSquared * std::abs(slopeByAperture.determinant());
-        }
-        const PolynomialResult<double> at = exit.evaluate(input);
-        const PupilState<double> state{at.values[0], at.values[1], at.values[2], at.values[3]};
-        const std::optional<LensRay<double>> there = sphere.ray(state);
-        if (!there) return;
-        error.solved = true;
-        error.pupilMm = std::hypot(state.x - ray.pupil.x, state.y - ray.pupil.y);
-        const Eigen::Vector3d off = toEigen(there->direction) - ray.direction;
-        error.directionMrad = 1e3 * off.norm();
-        // Both form dependent Jacobians by (s, a).
-        Eigen::Matrix4d byBoth;
-        for (std::size_t v = 0; v < 2; ++v) {
-            Eigen::Matrix2d bySensor = block(at, 2 * v, 0), bySecond = block(at, 2 * v, 2);
-            if (!twoPoint) {
-                bySensor += bySecond * slopeBySensor;
-                bySecond *= slopeByAperture;
-            }
-            byBoth.block<2, 2>(static_cast<Index>(2 * v), 0) = bySensor;
-            byBoth.block<2, 2>(static_cast<Index>(2 * v), 2) = bySecond;
-        }
-        error.sensorMicrometres =
-            1e3 * ray.directionBySensor.colPivHouseholderQr().solve(off).norm();
-        const double throughput = j * at.values[4];
-        error.throughput = std::abs(throughput - ray.throughput) / brightness;
-        const double fittedJ = twoPoint ? throughput / ray.transmittance : j;
-        error.etendue = std::abs(
-            std::abs(byBoth.determinant()) / (sphere.normalZ(state.x, state.y) * fittedJ) - 1.0);
-    };
-    parallelFor(errors.size(), measure);
-
-    FitErrors result;
-    std::array<std::vector<double>, 5> columns;
-    for (const RayErrors& error : errors) {
-        ++result.rays;
-        if (!error.solved) {
-            ++result.unsolved;
-            continue;
-        }
-        columns[0].push_back(error.pupilMm);
-        columns[1].push_back(error.directionMrad);
-        columns[2].push_back(error.sensorMicrometres);
-        columns[3].push_back(error.throughput);
-        columns[4].push_back(error.etendue);
-    }
-    result.pupilMm = summarize(std::move(columns[0]));
-    result.directionMrad = summarize(std::move(columns[1]));
-    result.sensorMicrometres = summarize(std::move(columns[2]));
-    result.throughputRelative = summarize(std::move(columns[3]));
-    result.etendue = summarize(std::move(columns[4]));
-    return result;
 }
 
 }  // namespace etendue

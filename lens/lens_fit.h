@@ -4,10 +4,10 @@
 #include <functional>
 #include <string_view>
 
-#include "lens/connect_start.h"
 #include "lens/fit_rays.h"
 #include "lens/lens_clip.h"
 #include "lens/polynomial_basis.h"
+#include "lens/sensor_fits.h"
 
 namespace etendue {
 
@@ -54,6 +54,7 @@ struct LensFit {
     SparsePolynomial aperture;  // sensorState only; vectors: aperture point (mm), slope
     ClipFit clip;               // in either form of (s, a, λ)
     ConnectStart start;         // likewise
+    SparsePolynomial slope;     // at the sensor, of (s, a, λ); in a domain with a focus range only
     RayCounts training;
     FitErrors errors;
     ClipErrors clipErrors;

@@ -13,9 +13,7 @@ PupilSphere::PupilSphere(const OpticalSystem& system) {
 }
 
 template <class T>
-PupilSphere::Frame<T> PupilSphere::frameAt(const Vector3<T>& point) const {
-    const Vector3<T> n = gradient(shape_, point);
-    const T share = 1.0 / (1.0 + n.z);
+PupilSphere::Frame<T> PupilSphere::frameAbout(const Vector3<T>& n, const T& share) {
     const T xy = -(n.x * n.y * share);
     return {{1.0 - n.x * n.x * share, xy, -n.x}, {xy, 1.0 - n.y * n.y * share, -n.y}, n};
 }
@@ -26,7 +24,8 @@ std::optional<PupilState<T>> PupilSphere::state(const LensRay<T>& ray) const {
         intersect(shape_, 0.0, valueOf(ray.origin), valueOf(ray.direction), Heading::toScene);
     if (!t) return {};
     const Vector3<T> point = pointOnSurface(shape_, ray, *t);
-    const Frame<T> frame = frameAt(point);
+    const Vector3<T> normal = gradient(shape_, point);
+    const Frame<T> frame = frameAbout(normal, 1.0 / (1.0 + normal.z));
     return PupilState<T>{point.x, point.y, dot(ray.direction, frame.x),
                          dot(ray.direction, frame.y)};
 }
@@ -36,9 +35,14 @@ std::optional<LensRay<T>> PupilSphere::rayOf(const PupilState<T>& state) const {
     using std::sqrt;
     const T squared = state.x * state.x + state.y * state.y;
     const T along = 1.0 - state.directionX * state.directionX - state.directionY * state.directionY;
-    if (!(valueOf(conicRadicand(shape_, squared)) > 0.0 && valueOf(along) >= 0.0)) return {};
-    const Vector3<T> point{state.x, state.y, sag(shape_, squared)};
-    const Frame<T> frame = frameAt(point);
+    const T radicand = conicRadicand(shape_, squared);
+    if (!(valueOf(radicand) > 0.0 && valueOf(along) >= 0.0)) return {};
+    // On a sphere the sag is c h² over what the frame divides by, too.
+    const double c = shape_.curvature;
+    const Vector3<T> normal{state.x * -c, state.y * -c, sqrt(radicand)};
+    const T share = 1.0 / (1.0 + normal.z);
+    const Frame<T> frame = frameAbout(normal, share);
+    const Vector3<T> point{state.x, state.y, squared * share * c};
     return LensRay<T>{point, frame.x * state.directionX + frame.y * state.directionY +
                                  frame.normal * sqrt(along)};
 }

@@ -67,8 +67,9 @@ private:
     struct Frame {
         Vector3<T> x, y, normal;
     };
+    /// `share` is 1/(1 + normal.z).
     template <class T>
-    Frame<T> frameAt(const Vector3<T>& point) const;
+    static Frame<T> frameAbout(const Vector3<T>& normal, const T& share);
     template <class T>
     std::optional<LensRay<T>> rayOf(const PupilState<T>& state) const;
 

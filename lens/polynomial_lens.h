@@ -20,7 +20,7 @@ public:
     /// TracedLens::trace.
     std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture,
                                  double wavelengthNm) const override;
-    /// By ConnectMethod::newton, from the fit's own first guess (connect_start.h).
+    /// By ConnectMethod::newton, from the fit's own first guess (sensor_fits.h).
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                        double wavelengthNm) const override;
     AperturePoint sampleAperture(Eigen::Vector2d u) const override;

@@ -7,16 +7,9 @@
 #include <numbers>
 #include <optional>
 
-#include "lens/lens_model.h"
+#include "lens/density.h"
 
 namespace etendue {
-
-/// Solid angle that the ray's direction sweeps per area of the sensor, 1/mm²; negative where the
-/// lens' map has turned over.
-inline double turning(const ExitRay& ray) {
-    const Eigen::Vector3d byX = ray.directionBySensor.col(0), byY = ray.directionBySensor.col(1);
-    return ray.direction.dot(byX.cross(byY));
-}
 
 /// How a ray misses a target, seen from where it leaves the lens.
 struct Miss {
@@ -41,15 +34,12 @@ inline Miss missOf(const ExitRay& ray, const Eigen::Vector3d& target) {
         miss.radians = std::numbers::pi;
         turn = miss.radians * d.unitOrthogonal();
     }
-    // The directions to the target by s, across d: what a step turns them by is solved for with
-    // Cramer's rule, d·(u × v) being the determinant of u and v across d.
-    const Eigen::Vector3d byX =
-        ray.directionBySensor.col(0) + perDistance * ray.originBySensor.col(0);
-    const Eigen::Vector3d byY =
-        ray.directionBySensor.col(1) + perDistance * ray.originBySensor.col(1);
+    // Equation (9) by Cramer's rule.
+    const Eigen::Matrix<double, 3, 2> bySensor =
+        ray.directionBySensor + perDistance * ray.originBySensor;
     const Eigen::Vector3d across = turn.cross(d);
-    miss.sensorStep << across.dot(-byY), across.dot(byX);
-    miss.sensorStep /= d.dot(byX.cross(byY));
+    miss.sensorStep << across.dot(-bySensor.col(1)), across.dot(bySensor.col(0));
+    miss.sensorStep /= determinantAcross(d, bySensor);
     return miss;
 }
 

@@ -68,10 +68,9 @@ std::optional<RearRay> toStop(const MonochromaticSystem& lens, SensorPoint senso
     return rear;
 }
 
-/// The same ray, differentiated by s alone with the aperture point held fixed:
-/// ∂q/∂s = K = −(∂A/∂q)⁻¹ ∂A/∂s.
+/// The same ray, differentiated by s alone with the aperture point held fixed.
 LensRay<Dual<2>> throughFixedAperture(const RearRay& rear, AperturePoint aperture) {
-    const Eigen::Matrix2d k = -rear.apertureBySlope.inverse() * rear.apertureBySensor;
+    const Eigen::Matrix2d k = slopeBySensor(rear.apertureBySlope, rear.apertureBySensor);
     const auto held = [&k](const Dual<4>& component) {
         Dual<2> result(component.value);
         const auto& by = component.partials;
@@ -105,18 +104,16 @@ std::optional<ExitRay> MonochromaticLens::exitRay(SensorPoint sensor,
     const MonochromaticSystem view = system();
     const std::optional<RearRay> rear = toStop<mode>(view, sensor, *q, lens_->sensorZMm());
     if (!rear) return {};
-    const double determinant = rear->apertureBySlope.determinant();
     const Eigen::Vector2d& paraxial = lens_->paraxialStopMap().bySlope;
-    if (!(determinant * paraxial.x() * paraxial.y() > 0.0)) return {};
+    if (!(rear->apertureBySlope.determinant() * paraxial.x() * paraxial.y() > 0.0)) return {};
 
     LensRay<Dual<2>> front = throughFixedAperture(*rear, aperture);
     const Passage passage = carryToScene<mode>(view, 0, view.system.stop, front, ignore);
     if (passage.status != TraceStatus::passed) return {};
-    const double cosSquared = 1.0 / (1.0 + q->squaredNorm());
     const double transmittance = rear->transmittance * passage.transmittance;
     const ExitRay ray{toEigen(valueOf(front.origin)), toEigen(valueOf(front.direction)),
                       partials(front.origin), partials(front.direction),
-                      cosSquared * cosSquared * transmittance / std::abs(determinant)};
+                      exchangeJacobian(*q, rear->apertureBySlope) * transmittance};
     if (mode == TraceMode::geometry) return ray;
     // Folded, or so grazing that nothing is let through.
     if (!(turning(ray) > 0.0 && ray.throughput > 0.0)) return {};

@@ -70,6 +70,7 @@ TEST_CASE("Fit file: what is read has the bits that were written") {
     REQUIRE(content.fit.has_value());
     checkSame(content.fit->exit, someFit().exit);
     checkSame(content.fit->aperture, someFit().aperture);
+    checkSame(content.fit->slope, someFit().slope);
     checkSame(content.fit->clip.squaredHeights, someFit().clip.squaredHeights);
     checkSame(content.fit->start.sensor, someFit().start.sensor);
     CHECK(content.fit->start.widestField == someFit().start.widestField);

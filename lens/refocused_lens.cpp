@@ -1,0 +1,59 @@
+#include "lens/refocused_lens.h"
+
+#include <Eigen/LU>
+#include <stdexcept>
+
+namespace etendue {
+
+RefocusedLens::RefocusedLens(const Prescription& prescription, const LensFit& fit,
+                             const Aperture& aperture, double sensorDistanceMm)
+    : lens_(prescription, fit, aperture), shiftMm_(sensorDistanceMm - fit.domain.sensorDistanceMm) {
+    const double rounding = 1e-12 * fit.domain.sensorDistanceMm;
+    if (!(shiftMm_ >= -rounding && shiftMm_ <= fit.domain.sensorTravelMm + rounding))
+        throw std::invalid_argument("refocused lens: outside the focus range of the fit");
+    if (fit.domain.sensorTravelMm > 0.0) slope_.emplace(fit.slope);
+}
+
+RefocusedLens::Moved RefocusedLens::moved(const Eigen::Vector2d& reference, AperturePoint aperture,
+                                          double wavelengthNm) const {
+    if (!slope_) return {reference, Eigen::Matrix2d::Identity()};
+    const auto q = slope_->evaluateBySensor({reference, aperture.mm, wavelengthNm});
+    Eigen::Matrix2d bySensor;
+    bySensor << q.bySensor[0][0], q.bySensor[0][1], q.bySensor[1][0], q.bySensor[1][1];
+    return {reference - shiftMm_ * Eigen::Vector2d(q.values[0], q.values[1]),
+            Eigen::Matrix2d::Identity() - shiftMm_ * bySensor};
+}
+
+std::optional<ExitRay> RefocusedLens::trace(SensorPoint sensor, AperturePoint aperture,
+                                            double wavelengthNm) const {
+    // Newton's method for the point on the fit's own sensor. The slope is all but linear in it:
+    // two or three steps.
+    Eigen::Vector2d reference = sensor.mm;
+    Moved at = moved(reference, aperture, wavelengthNm);
+    constexpr int mostSteps = 10;
+    for (int i = 0; (at.mm - sensor.mm).norm() > 1e-12 * lens_.domain().sensorHalfSizeMm.norm();
+         ++i) {
+        if (i == mostSteps || !at.mm.allFinite()) return {};
+        reference -= at.byReference.inverse() * (at.mm - sensor.mm);
+        at = moved(reference, aperture, wavelengthNm);
+    }
+    std::optional<ExitRay> ray = lens_.trace({reference}, aperture, wavelengthNm);
+    if (!ray) return {};
+    const Eigen::Matrix2d referenceBySensor = at.byReference.inverse();
+    const double determinant = referenceBySensor.determinant();
+    if (!(determinant > 0.0)) return {};
+    ray->originBySensor *= referenceBySensor;
+    ray->directionBySensor *= referenceBySensor;
+    ray->throughput *= determinant;
+    return ray;
+}
+
+std::optional<SensorPoint> RefocusedLens::connect(const Eigen::Vector3d& targetMm,
+                                                  AperturePoint aperture,
+                                                  double wavelengthNm) const {
+    const auto reference = lens_.connect(targetMm, aperture, wavelengthNm);
+    if (!reference) return {};
+    return SensorPoint{moved(reference->mm, aperture, wavelengthNm).mm};
+}
+
+}  // namespace etendue

@@ -17,7 +17,7 @@ namespace etendue {
 namespace {
 
 constexpr double pictureWidth = 1000.0, tallestPanel = 620.0, margin = 28.0;
-constexpr double headerHeight = 84.0, panelGap = 30.0, legendHeight = 34.0;
+constexpr double titleHeight = 38.0, headerHeight = 46.0, panelGap = 30.0, legendHeight = 34.0;
 
 struct DrawnRay {
     std::vector<SectionPoint> points;
@@ -184,20 +184,22 @@ void drawLegend(Svg& svg, Eigen::Vector2d at, const LensDrawCommand& command,
                               fields[i].sensorMm.norm()));
 }
 
-void drawHeader(Svg& svg, const Prescription& prescription, const LensDrawCommand& command,
-                const TracedLens& lens) {
+void drawTitle(Svg& svg, const Prescription& prescription) {
     svg.text({margin, 26.0},
              prescription.zoomPosition.empty()
                  ? prescription.name
                  : fmt::format("{}, at {}", prescription.name, prescription.zoomPosition),
              TextAnchor::start, "bold");
     svg.text({margin, 44.0}, prescription.source, TextAnchor::start, "muted");
-    svg.text({margin, 62.0},
-             fmt::format("f = {:.2f} mm, {}, sensor {:g} × {:g} mm; rays traced exactly at {}",
-                         lens.focalLengthMm(), describe(command.choice), command.choice.sensorMm[0],
-                         command.choice.sensorMm[1],
-                         fmt::format("{:.0f} nm", fmt::join(command.wavelengthsNm, ", "))),
-             TextAnchor::start, "muted");
+}
+
+void drawSetting(Svg& svg, double y, const LensDrawCommand& command, const TracedLens& lens) {
+    svg.text(
+        {margin, y},
+        fmt::format("f = {:.2f} mm, {}, sensor {:g} × {:g} mm; rays traced exactly at {:.0f} nm",
+                    lens.focalLengthMm(), describe(command.choice), command.choice.sensorMm[0],
+                    command.choice.sensorMm[1], fmt::join(command.wavelengthsNm, ", ")),
+        TextAnchor::start, "muted");
 }
 
 }  // namespace
@@ -227,12 +229,14 @@ LensDrawing drawLens(const Prescription& prescription, const LensDrawCommand& co
         scale =
             std::min({scale, (pictureWidth - 2.0 * margin) / size.x(), tallestPanel / size.y()});
     }
-    double height = headerHeight + legendHeight;
+    const double header = headerHeight + (command.hasTitle ? titleHeight : 0.0);
+    double height = header + legendHeight;
     for (const Panel& panel : panels)
         height += scale * (panel.bounds.high.y() - panel.bounds.low.y()) + panelGap;
     Svg svg(pictureWidth, height);
-    drawHeader(svg, prescription, command, *lens);
-    double top = headerHeight;
+    if (command.hasTitle) drawTitle(svg, prescription);
+    drawSetting(svg, header - 22.0, command, *lens);
+    double top = header;
     for (const Panel& panel : panels) {
         const SectionPoint size = panel.bounds.high - panel.bounds.low;
         const double left = 0.5 * (pictureWidth - scale * size.x());

@@ -16,6 +16,7 @@ struct LensDrawCommand {
     int raysPerField = 7;  // at each wavelength
     std::vector<double> wavelengthsNm = {dLineNm};
     bool colourByWavelength = false;
+    bool hasTitle = true;
     bool asJson = false;
 };
 

@@ -21,7 +21,12 @@ ReportAxis makeAxis(const TracedLens& lens, const FitDomain& domain, std::string
     double edge = domain.imageRadiusMm;
     for (int i = 0; i < 2; ++i)
         if (along[i] > 0.0) edge = std::min(edge, domain.sensorHalfSizeMm[i] / along[i]);
-    return {std::move(name), along, std::min(edge, imageHeightMm(lens, along)), edge};
+    const double bright = std::min(edge, imageHeightMm(lens, along));
+    constexpr int steps = 200;
+    const MonochromaticLens atLine(lens, dLineNm);
+    int reached = 0;
+    while (reached < steps && atLine.chiefRay({bright * (reached + 1) / steps * along})) ++reached;
+    return {std::move(name), along, bright, edge, bright * reached / steps};
 }
 
 std::vector<ReportAxis> axesOf(const TracedLens& lens, const FitDomain& domain,
@@ -76,10 +81,11 @@ std::vector<ReportSpot> makeSpots(const TracedLens& exact, const PolynomialLens&
                                   std::span<const ReportAxis> axes, double focusDistanceMm) {
     std::vector<ReportSpot> spots;
     for (const ReportAxis& axis : axes)
-        // Not quite to the edge, where a spot would be cut in half.
-        for (const double share : {0.0, 0.4, 0.7, 0.85, 0.97}) {
+        // Not quite to the edge, where a spot would be cut in half, nor beyond the chief rays,
+        // where the few rays that pass would speak for a spot that lies elsewhere.
+        for (const double share : {0.0, 0.35, 0.6, 0.78, 0.9, 0.97}) {
             if (share == 0.0 && !spots.empty()) continue;
-            auto spot = makeSpot(exact, fitted, axis, share * axis.brightMm, focusDistanceMm);
+            auto spot = makeSpot(exact, fitted, axis, share * axis.chiefMm, focusDistanceMm);
             if (spot) spots.push_back(*std::move(spot));
         }
     return spots;
@@ -130,6 +136,7 @@ std::vector<Eigen::Vector2d> paraxialFocus(const TracedLens& lens, const FitDoma
 LensDrawing drawingFor(const Prescription& prescription, const LensReportCommand& command) {
     LensDrawCommand draw;
     draw.choice = command.choice;
+    draw.hasTitle = false;
     return drawLens(prescription, draw);
 }
 

@@ -35,6 +35,7 @@ struct ReportAxis {
     Eigen::Vector2d along;  // unit
     double brightMm;        // where the illumination falls to 5 % of that on the axis, or the edge
     double edgeMm;          // of the fit's domain
+    double chiefMm;         // as far as brightMm, if there are chief rays
 };
 
 struct ReportSpot {

@@ -38,7 +38,7 @@ Svg plotOf(std::string title, PlotAxis x, std::string yLabel, std::vector<PlotSe
     return plot.svg();
 }
 
-/// Black to yellow through violet and orange, legible on white and on black; `share` in [0, 1].
+/// Violet to yellow through green, legible on white and on black; `share` in [0, 1].
 std::string heatColour(double share) {
     constexpr std::array<std::array<double, 3>, 5> stops{
         {{59, 28, 140}, {33, 110, 160}, {36, 158, 122}, {150, 205, 70}, {253, 231, 60}}};
@@ -164,25 +164,20 @@ Svg spotFigure(const ReportSpot& spot) {
 }
 
 Svg distortionFigure(const LensReport& report) {
-    std::vector<PlotSeries> series;
     double widest = 0.0;
-    bool isWide = false;
     for (const ReportCurves& curves : report.curves)
         for (const DistortionPoint& point : curves.distortion)
             widest = std::max(widest, point.fieldDegrees);
-    isWide = widest > 60.0;
-    int colour = 0;
+    const bool isWide = widest > 60.0;  // beyond, tangents grow out of all proportion
+    std::vector<PlotSeries> series;
     for (const ReportCurves& curves : report.curves) {
-        const std::string axis = curves.axis.name.empty() ? "" : " along " + curves.axis.name;
-        PlotSeries rectilinear{"from f tan θ" + axis, {}, colour};
-        PlotSeries equidistant{"from f θ" + axis, {}, colour + 1, true, false, true};
-        for (const DistortionPoint& point : curves.distortion) {
-            rectilinear.points.emplace_back(point.fieldDegrees, point.rectilinearPercent);
-            equidistant.points.emplace_back(point.fieldDegrees, point.equidistantPercent);
-        }
-        if (!isWide) series.push_back(std::move(rectilinear));
-        if (isWide) series.push_back(std::move(equidistant));
-        colour += 2;
+        PlotSeries one{curves.axis.name.empty() ? "" : "along " + curves.axis.name,
+                       {},
+                       static_cast<int>(series.size())};
+        for (const DistortionPoint& point : curves.distortion)
+            one.points.emplace_back(point.fieldDegrees,
+                                    isWide ? point.equidistantPercent : point.rectilinearPercent);
+        series.push_back(std::move(one));
     }
     return plotOf(isWide ? "Distortion from f θ" : "Distortion from f tan θ",
                   {"field angle, degrees", 0.0, widest}, "%", std::move(series));

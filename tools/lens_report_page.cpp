@@ -26,7 +26,7 @@ p{max-width:72ch;margin:6px 0 12px}
 .muted,figcaption,caption{color:var(--muted)}
 .facts{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:10px;margin:18px 0 24px}
 .facts div{background:var(--card);border-radius:8px;padding:10px 14px}
-.facts b{display:block;font-size:1.15rem;font-variant-numeric:tabular-nums}
+.facts b{display:block;font-size:1.05rem;font-variant-numeric:tabular-nums}
 .facts span{color:var(--muted);font-size:.85rem}
 .grid{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,400px),1fr));gap:26px 30px;align-items:start}
 figure{margin:0}
@@ -70,6 +70,9 @@ std::string grid(const std::string& content) {
     return "<div class=\"grid\">\n" + content + "</div>\n";
 }
 
+/// Words in the cell next to a figure.
+std::string beside(const std::string& content) { return "<div>" + content + "</div>\n"; }
+
 std::string fact(const std::string& value, const std::string& label) {
     return fmt::format("<div><b>{}</b><span>{}</span></div>\n", escapedXml(value),
                        escapedXml(label));
@@ -90,7 +93,7 @@ std::string facts(const LensReport& report) {
            fact(fmt::format("{:.2f} mm", 2.0 * info.imageCircleRadiusMm),
                 "image circle, diameter") +
            fact(fmt::format("{:.1f}°", widest), "from the axis, the farthest spot below") +
-           fact(fmt::format("{:.2g} mrad", errors.directionMrad.rms), "fit error, rms") +
+           fact(fmt::format("{:.3g} µrad", 1e3 * errors.directionMrad.rms), "fit error, rms") +
            fact(fmt::format("{:.2g} µm", errors.sensorMicrometres.rms), "the same on the sensor") +
            "</div>\n";
 }
@@ -147,19 +150,23 @@ std::string distortion(const LensReport& report) {
                                        fisheye->k[1], fisheye->k[2], fisheye->k[3]),
                            fisheye->residual));
     std::string verdict = "No model could be fitted: too few chief rays reach the sensor.";
+    constexpr double fineMm = 1e-3;  // a fraction of any pixel
     if (fisheye && !pinhole)
         verdict = "The pinhole model ends below 90° and does not apply; use the fisheye model.";
+    else if (pinhole && fisheye && pinhole->residual.mostMm < fineMm)
+        verdict = "The pinhole model suits this lens: it is never off by a micrometre.";
     else if (pinhole && fisheye)
         verdict = pinhole->residual.rmsMm <= fisheye->residual.rmsMm
                       ? "The pinhole model suits this lens better."
                       : "The fisheye model suits this lens better.";
     return heading("Distortion") +
-           grid(figure(distortionFigure(report), "Distortion over the field")) +
+           grid(figure(distortionFigure(report), "Distortion over the field") +
+                beside(paragraph(
+                    verdict +
+                    " Divide the focal lengths by the pixel pitch for OpenCV's camera matrix; the "
+                    "principal point is the middle of the sensor."))) +
            tableOf(rows,
-                   "OpenCV's models, fitted to exact chief rays over the sensor at the d line") +
-           paragraph(verdict +
-                     " Divide the focal lengths by the pixel pitch for OpenCV's camera "
-                     "matrix; the principal point is the middle of the sensor.");
+                   "OpenCV's models, fitted to exact chief rays over the sensor at the d line");
 }
 
 std::string light(const LensReport& report) {
@@ -167,12 +174,12 @@ std::string light(const LensReport& report) {
     for (const ReportCurves& curves : report.curves)
         figures += figure(illuminationFigure(curves), "Relative illumination");
     return heading("Illumination") +
-           paragraph(
-               "The fall of light toward the edge under a uniform sky, and what it is the "
-               "product of: cos⁴ of the chief ray's angle at the sensor, the share of the "
-               "stop that no rim hides, and the rest, which is the exit pupil's apparent "
-               "size and the glass.") +
-           grid(figures);
+           grid(figures +
+                beside(paragraph(
+                    "The fall of light toward the edge under a uniform sky, and what it is the "
+                    "product of: cos⁴ of the chief ray's angle at the sensor, the share of the "
+                    "stop that no rim hides, and the rest, which is the exit pupil's apparent "
+                    "size and the glass.")));
 }
 
 std::string colour(const LensReport& report) {
@@ -195,22 +202,22 @@ std::string fit(const LensReport& report) {
     for (const ReportCurves& curves : report.curves)
         figures += figure(fitMapFigure(curves, fit.domain.apertureRadiusMm),
                           "Error of the fit over field and aperture");
+    const std::string words =
+        tableOf(rows, fmt::format("On {} rays drawn anew, {} of them unsolved", fit.errors.rays,
+                                  fit.errors.unsolved)) +
+        paragraph(fmt::format(
+            "Rims: {:.3f} % of the rays that the fit accepts the lens would block, {:.3f} % of "
+            "those that it lets through the fit refuses. {:.2f} % of the light is in folded "
+            "rays, which no fit has.",
+            100.0 * fit.clipErrors.wronglyAccepted, 100.0 * fit.clipErrors.wronglyBlocked,
+            100.0 * fit.training.foldedLight)) +
+        "<p>In the map: <span class=\"key\" style=\"background:#e0488b\"></span>accepted though a "
+        "rim blocks it, <span class=\"key\" style=\"background:#8a8f98\"></span>refused though it "
+        "passes; empty where there is no light.</p>\n";
     return heading("Polynomial fit") +
            paragraph(fmt::format("{}; {}. Domain: {}.", describe(fit.settings), describeCost(fit),
                                  describe(fit.domain))) +
-           tableOf(rows, fmt::format("On {} rays drawn anew, {} of them unsolved", fit.errors.rays,
-                                     fit.errors.unsolved)) +
-           paragraph(fmt::format(
-               "Rims: {:.3f} % of the rays that the fit accepts the lens would block, {:.3f} % of "
-               "those that it lets through the fit refuses. {:.2f} % of the light is in folded "
-               "rays, which no fit has.",
-               100.0 * fit.clipErrors.wronglyAccepted, 100.0 * fit.clipErrors.wronglyBlocked,
-               100.0 * fit.training.foldedLight)) +
-           "<p><span class=\"key\" style=\"background:#e0488b\"></span>accepted though a rim "
-           "blocks "
-           "it &ensp;<span class=\"key\" style=\"background:#8a8f98\"></span>refused though it "
-           "passes &ensp;empty: no light</p>\n" +
-           grid(figures);
+           grid(figures + beside(words));
 }
 
 int sumOf(std::span<const ConnectRing> rings, int ConnectRing::*part) {

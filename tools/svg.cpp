@@ -104,7 +104,8 @@ void Svg::rectangle(Eigen::Vector2d corner, Eigen::Vector2d size, std::string_vi
 }
 
 void Svg::cell(Eigen::Vector2d corner, Eigen::Vector2d size, std::string_view colour) {
-    body_ += rectangleOf(corner, size) + fmt::format(" fill=\"{}\"/>\n", colour);
+    body_ += rectangleOf(corner, size) +
+             fmt::format(" fill=\"{}\" shape-rendering=\"crispEdges\"/>\n", colour);
 }
 
 void Svg::dots(std::span<const Eigen::Vector2d> centres, std::string_view classes) {

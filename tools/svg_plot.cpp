@@ -34,7 +34,8 @@ PlotAxis axisFor(std::string label, std::span<const double> values, AxisScale sc
         }
     if (!(low <= high)) low = high = 1.0;
     if (isLogarithmic) return {std::move(label), low / 1.25, high * 1.25, scale};
-    const double span = high > low ? high - low : std::max(std::abs(high), 1e-12);
+    if (low == 0.0 && high == 0.0) high = 1.0;
+    const double span = high > low ? high - low : std::abs(high);
     const double step = niceBelow(span / 5.0);
     return {std::move(label), step * std::floor(low / step - 1e-9 + (low == 0.0 ? 1e-9 : 0.0)),
             step * std::ceil(high / step + (high == 0.0 ? 0.0 : 1e-9)), scale};
@@ -63,9 +64,9 @@ std::vector<double> tickValues(const PlotAxis& axis, int count) {
 }
 
 std::string tickText(double value) {
-    if (std::abs(value) < 1e-12) return "0";
-    const std::string text = fmt::format("{:.4g}", value);
-    return value < 0.0 ? "−" + text.substr(1) : text;
+    std::string text = fmt::format("{:.4g}", std::abs(value));
+    if (const std::size_t e = text.find("e-0"); e != std::string::npos) text.replace(e, 3, "e−");
+    return value < 0.0 ? "−" + text : text;
 }
 
 Plot::Plot(std::string title, PlotAxis x, PlotAxis y, double width, double height)
@@ -107,7 +108,7 @@ void Plot::drawAxes(Svg& svg) const {
 }
 
 void Plot::drawLegend(Svg& svg) const {
-    double y = height_;
+    double y = height_ + 10.0;
     for (const PlotSeries& series : series_) {
         if (series.name.empty()) continue;
         const std::string colour = fmt::format("c{}", series.colour % svgSeriesColours);
@@ -123,7 +124,7 @@ void Plot::drawLegend(Svg& svg) const {
 Svg Plot::svg() const {
     const auto named = std::ranges::count_if(
         series_, [](const PlotSeries& series) { return !series.name.empty(); });
-    Svg svg(width_, height_ + legendRow * static_cast<double>(named));
+    Svg svg(width_, height_ + (named > 0 ? 6.0 : 0.0) + legendRow * static_cast<double>(named));
     drawAxes(svg);
     svg.beginClip({left, top - 3.0}, {width_ - left - right + 3.0, height_ - top - bottom + 6.0});
     for (const PlotSeries& series : series_) {

@@ -70,3 +70,16 @@ TEST_CASE("Plot: named series are in the legend") {
     CHECK(contains(text, ">axial</text>"));
     CHECK(contains(text, "Error &amp; terms"));
 }
+
+TEST_CASE("tickText: numbers are short and minus is a minus") {
+    CHECK(tickText(0.0) == "0");
+    CHECK(tickText(-0.25) == "−0.25");
+    CHECK(tickText(1e-5) == "1e−5");
+    CHECK(tickText(-0.0) == "0");
+}
+
+TEST_CASE("axisFor: nothing but zeros still has an axis") {
+    const PlotAxis axis = axisFor("y", std::vector{0.0, 0.0});
+    CHECK(axis.low == 0.0);
+    CHECK(axis.high >= 1.0);
+}

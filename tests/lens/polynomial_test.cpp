@@ -3,7 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
+#include <stdexcept>
 
 namespace etendue {
 
@@ -109,8 +111,8 @@ TEST_CASE("PolynomialEvaluator: the Jacobian agrees with central differences") {
                     (j < 2 ? moved.s[j] : moved.p[j - 2]) += steps * h;
                     return evaluateNaively(polynomial, moved);
                 };
-                // The five-point rule: an error of h⁴/30 of a fifth derivative, (1e-3)⁴ 7!/2!/30
-                // of the size in scaled units, below 1e-9; rounding 1e-16/1e-3.
+                // The five-point rule: an error of h⁴/30 of a fifth derivative, (1e-3)⁴ 7!/2!/30 of
+                // the size in scaled units, below 1e-9; rounding 1e-16/1e-3.
                 const Eigen::VectorXd difference =
                     (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
                 for (int o = 0; o < 4; ++o)
@@ -122,39 +124,105 @@ TEST_CASE("PolynomialEvaluator: the Jacobian agrees with central differences") {
     }
 }
 
-TEST_CASE_TEMPLATE("PolynomialEvaluator: a batch gives what single evaluations give", Lanes,
-                   std::integral_constant<int, 8>, std::integral_constant<int, 16>) {
-    constexpr int lanes = Lanes::value;
-    for (const double coupling : {0.0, 0.3}) {
-        SparsePolynomial polynomial = somePolynomial(PolynomialBasis::axial, {2, 1}, 1);
-        polynomial.scaling.coupling = {coupling, coupling};
-        const PolynomialEvaluator<float> evaluator(polynomial);
-        const PolynomialEvaluator<double> exact(polynomial);
-        const std::vector<PolynomialInput> inputs = someInputs(lanes);
-        BatchInput<float, lanes> batch;
-        for (int i = 0; i < lanes; ++i) {
-            const PolynomialInput& input = inputs[static_cast<std::size_t>(i)];
-            batch.sx[i] = static_cast<float>(input.s.x());
-            batch.sy[i] = static_cast<float>(input.s.y());
-            batch.px[i] = static_cast<float>(input.p.x());
-            batch.py[i] = static_cast<float>(input.p.y());
-            batch.wavelengthNm[i] = static_cast<float>(input.wavelengthNm);
-        }
-        const PolynomialBySensor<Batch<float, lanes>> result = evaluator.evaluateBySensor(batch);
-        for (int i = 0; i < lanes; ++i) {
-            const PolynomialInput& input = inputs[static_cast<std::size_t>(i)];
-            const PolynomialResult<double> single = exact.evaluate(input);
-            // As above, and seven times that for a derivative of degree 7; inputs are rounded too.
-            const double bound = 0x1p-23 * 220.0 * 7.0 * sizeOf(polynomial, input);
-            for (std::size_t o = 0; o < 5; ++o) {
-                CHECK(std::abs(static_cast<double>(result.values[o][i]) - single.values[o]) <=
-                      bound);
-                for (std::size_t j = 0; o < 4 && j < 2; ++j)
-                    CHECK(std::abs(static_cast<double>(result.bySensor[o][j][i]) -
-                                   single.jacobian[o][j]) <= bound);
+TEST_CASE("PolynomialEvaluator: each question has the answer of the one that asks for all") {
+    for (const PolynomialBasis basis : allBases)
+        for (const double coupling : {0.0, 0.3}) {
+            SparsePolynomial polynomial = somePolynomial(basis, {2, 1}, 3);
+            polynomial.scaling.coupling = {coupling, coupling};
+            const PolynomialEvaluator<double> evaluator(polynomial);
+            for (const PolynomialInput& input : someInputs(20)) {
+                const PolynomialResult<double> all = evaluator.evaluate(input);
+                const PolynomialValues<double> values = evaluator.values(input);
+                const PolynomialBySensor<double> some = evaluator.evaluateBySensor(input);
+                // The same operations on values; derivatives by s of p coupled to s round alike.
+                for (std::size_t o = 0; o < 5; ++o) {
+                    CHECK(values[o] == all.values[o]);
+                    CHECK(some.values[o] == all.values[o]);
+                }
+                for (std::size_t o = 0; o < 4; ++o)
+                    for (std::size_t j = 0; j < 2; ++j)
+                        CHECK(some.bySensor[o][j] == all.jacobian[o][j]);
             }
         }
-    }
+}
+
+TEST_CASE("PolynomialEvaluator: as many vectors and scalars as there may be are told apart") {
+    for (const PolynomialBasis basis : allBases)
+        for (const OutputCount outputs :
+             {OutputCount{0, 1}, OutputCount{0, 4}, OutputCount{0, 10}, OutputCount{1, 0},
+              OutputCount{1, 8}, OutputCount{2, 0}, OutputCount{2, 6}}) {
+            const SparsePolynomial polynomial = somePolynomial(basis, outputs, 11);
+            const PolynomialEvaluator<double> evaluator(polynomial);
+            for (const PolynomialInput& input : someInputs(5)) {
+                const Eigen::VectorXd expected = evaluateNaively(polynomial, input);
+                const PolynomialValues<double> values = evaluator.values(input);
+                const PolynomialResult<double> all = evaluator.evaluate(input);
+                const double bound = 0x1p-52 * 220.0 * sizeOf(polynomial, input);
+                for (int o = 0; o < outputs.total(); ++o) {
+                    CHECK(std::abs(values[static_cast<std::size_t>(o)] - expected[o]) <= bound);
+                    CHECK(values[static_cast<std::size_t>(o)] ==
+                          all.values[static_cast<std::size_t>(o)]);
+                }
+            }
+        }
+    SparsePolynomial tooMany;
+    tooMany.outputs = {0, mostOutputs + 1};
+    CHECK_THROWS_AS(PolynomialEvaluator<double>{tooMany}, std::invalid_argument);
+    tooMany.outputs = {mostVectors + 1, 0};
+    CHECK_THROWS_AS(PolynomialEvaluator<double>{tooMany}, std::invalid_argument);
+}
+
+/// T and how many side by side.
+template <class T, int size>
+struct BatchOf {
+    using Number = T;
+    static constexpr int count = size;
+};
+
+TEST_CASE_TEMPLATE("PolynomialEvaluator: a batch gives what single evaluations give", Kind,
+                   BatchOf<float, 8>, BatchOf<float, 16>, BatchOf<double, 8>, BatchOf<double, 16>) {
+    using T = typename Kind::Number;
+    constexpr int count = Kind::count;
+    for (const PolynomialBasis basis : allBases)
+        for (const double coupling : {0.0, 0.3}) {
+            SparsePolynomial polynomial = somePolynomial(basis, {2, 2}, 5);
+            polynomial.scaling.coupling = {coupling, coupling};
+            const PolynomialEvaluator<T> evaluator(polynomial);
+            const PolynomialEvaluator<double> exact(polynomial);
+            const std::vector<PolynomialInput> inputs = someInputs(count);
+            BatchInput<T, count> batch;
+            for (int i = 0; i < count; ++i) {
+                const PolynomialInput& input = inputs[static_cast<std::size_t>(i)];
+                batch.sx[i] = static_cast<T>(input.s.x());
+                batch.sy[i] = static_cast<T>(input.s.y());
+                batch.px[i] = static_cast<T>(input.p.x());
+                batch.py[i] = static_cast<T>(input.p.y());
+                batch.wavelengthNm[i] = static_cast<T>(input.wavelengthNm);
+            }
+            const PolynomialValues<Batch<T, count>> values = evaluator.values(batch);
+            const PolynomialBySensor<Batch<T, count>> some = evaluator.evaluateBySensor(batch);
+            const PolynomialResult<Batch<T, count>> all = evaluator.evaluate(batch);
+            for (int i = 0; i < count; ++i) {
+                const PolynomialInput& input = inputs[static_cast<std::size_t>(i)];
+                const PolynomialResult<double> single = exact.evaluate(input);
+                // As above, and seven times that for a derivative of degree 7; inputs are rounded
+                // too. The scaled unit of s is 10 mm, of p 4 mm.
+                const double bound = static_cast<double>(std::numeric_limits<T>::epsilon()) *
+                                     220.0 * 7.0 * sizeOf(polynomial, input);
+                const auto near = [&](T number, double expected) {
+                    return std::abs(static_cast<double>(number) - expected) <= bound;
+                };
+                for (std::size_t o = 0; o < 6; ++o) {
+                    CHECK(near(values[o][i], single.values[o]));
+                    CHECK(near(some.values[o][i], single.values[o]));
+                    CHECK(near(all.values[o][i], single.values[o]));
+                    for (std::size_t j = 0; o < 4 && j < 4; ++j) {
+                        CHECK(near(all.jacobian[o][j][i], single.jacobian[o][j]));
+                        if (j < 2) CHECK(near(some.bySensor[o][j][i], single.jacobian[o][j]));
+                    }
+                }
+            }
+        }
 }
 
 TEST_CASE("PolynomialEvaluator: in the axial basis vectors turn with the inputs, scalars stay") {

@@ -11,6 +11,7 @@
 #include "tools/lens_fit_command.h"
 #include "tools/lens_info.h"
 #include "tools/lens_report.h"
+#include "tools/lens_trade_command.h"
 
 namespace etendue {
 
@@ -33,10 +34,7 @@ void runWhenChosen(CLI::App* subcommand, Chosen& chosen, std::shared_ptr<Command
     });
 }
 
-void addLens(CLI::App* subcommand, LensChoice& choice) {
-    subcommand->add_option("lens", choice.lens, "Lens file, or the name of one in scenes/lenses")
-        ->required()
-        ->type_name("LENS");
+void addLensSettings(CLI::App* subcommand, LensChoice& choice) {
     subcommand
         ->add_option("--zoom", choice.zoomPosition, "Of a zoom lens; default: the first it lists")
         ->type_name("POSITION");
@@ -53,6 +51,13 @@ void addLens(CLI::App* subcommand, LensChoice& choice) {
     subcommand->add_option("--f-number", choice.fNumber, "Default: wide open")
         ->check(CLI::PositiveNumber.description(""))
         ->type_name("N");
+}
+
+void addLens(CLI::App* subcommand, LensChoice& choice) {
+    subcommand->add_option("lens", choice.lens, "Lens file, or the name of one in scenes/lenses")
+        ->required()
+        ->type_name("LENS");
+    addLensSettings(subcommand, choice);
 }
 
 void addJson(CLI::App* subcommand, bool& asJson) {
@@ -104,6 +109,16 @@ void addChoice(CLI::App* subcommand, const char* flag, const char* description,
         ->type_name("NAME");
 }
 
+std::map<std::string, PolynomialBasis> polynomialBases() {
+    return {{"axial", PolynomialBasis::axial},
+            {"two-plane", PolynomialBasis::twoPlane},
+            {"cartesian", PolynomialBasis::cartesian},
+            {"none", PolynomialBasis::none}};
+}
+std::map<std::string, FitForm> fitForms() {
+    return {{"two-point", FitForm::twoPoint}, {"sensor-state", FitForm::sensorState}};
+}
+
 void addFitOptions(CLI::App* subcommand, FitOptions& options) {
     subcommand->add_option("--terms", options.terms, "Of each polynomial; default: 40")
         ->check(CLI::Range(1, 5000).description(""))
@@ -114,15 +129,9 @@ void addFitOptions(CLI::App* subcommand, FitOptions& options) {
     addChoice(
         subcommand, "--basis",
         "axial, two-plane, cartesian (the published one), none; default: by the lens' symmetry",
-        std::map<std::string, PolynomialBasis>{{"axial", PolynomialBasis::axial},
-                                               {"two-plane", PolynomialBasis::twoPlane},
-                                               {"cartesian", PolynomialBasis::cartesian},
-                                               {"none", PolynomialBasis::none}},
-        options.basis);
+        polynomialBases(), options.basis);
     addChoice(subcommand, "--form", "two-point (default), or sensor-state, the published one",
-              std::map<std::string, FitForm>{{"two-point", FitForm::twoPoint},
-                                             {"sensor-state", FitForm::sensorState}},
-              options.form);
+              fitForms(), options.form);
     subcommand
         ->add_option("--wavelengths", options.wavelengthsNm,
                      "The shortest and the longest, in nm; default: 400,700")
@@ -173,12 +182,59 @@ void addCodegen(CLI::App& lens, Chosen& chosen) {
     runWhenChosen(codegen, chosen, command, runLensCodegen);
 }
 
+/// Several of a few names, separated by commas.
+template <class Value>
+void addChoices(CLI::App* subcommand, const char* flag, const char* description,
+                const std::map<std::string, Value>& values, std::vector<Value>& target) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : values) names.push_back(name);
+    subcommand
+        ->add_option_function<std::vector<std::string>>(
+            flag,
+            [values, &target](const std::vector<std::string>& chosen) {
+                target.clear();
+                for (const std::string& name : chosen) target.push_back(values.at(name));
+            },
+            description)
+        ->delimiter(',')
+        ->check(CLI::IsMember(names).description(""))
+        ->type_name("LIST");
+}
+
+void addTrade(CLI::App& lens, Chosen& chosen) {
+    const auto command = std::make_shared<LensTradeCommand>();
+    CLI::App* trade = lens.add_subcommand(
+        "trade", "Fit lenses in many ways; print what each fit costs and what it is worth");
+    trade->add_option("lens", command->lenses, "Lens files, or names of some in scenes/lenses")
+        ->type_name("LENS");
+    addLensSettings(trade, command->choice);
+    trade->add_option("--terms", command->terms, "Default: 4,8,16,28,40,64")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 5000).description(""))
+        ->type_name("LIST");
+    trade->add_option("--degree", command->degrees, "Default: 7,11")
+        ->delimiter(',')
+        ->check(CLI::Range(1, mostPower).description(""))
+        ->type_name("LIST");
+    addChoices(trade, "--basis", "Default: by the lens' symmetry, and cartesian", polynomialBases(),
+               command->bases);
+    addChoices(trade, "--form", "Default: two-point,sensor-state", fitForms(), command->forms);
+    trade->add_flag("--slides", command->slides,
+                    "The published accuracy table, measured again, ours beside it");
+    trade->add_option("--csv", command->csv, "Also write the table here")->type_name("FILE");
+    trade->add_option("--plot", command->plot, "Also draw error against cost, as SVG")
+        ->type_name("FILE");
+    addJson(trade, command->asJson);
+    runWhenChosen(trade, chosen, command, runLensTrade);
+}
+
 }  // namespace
 
 void addLensCommands(CLI::App& app, Chosen& chosen) {
     CLI::App* lens = app.add_subcommand("lens", "Look at a lens, draw it, fit polynomials to it");
     lens->require_subcommand(1);
-    for (const auto add : {addInfo, addDraw, addFit, addReport, addCodegen}) add(*lens, chosen);
+    for (const auto add : {addInfo, addDraw, addFit, addReport, addCodegen, addTrade})
+        add(*lens, chosen);
 }
 
 }  // namespace etendue

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "tools/text_table.h"
+
 namespace etendue {
 
 namespace {
@@ -93,28 +95,6 @@ std::string remarks(const Surface& surface) {
             text += fmt::format(" a{} = {:g}", 4 + 2 * i, surface.asphere[i]);
     if (surface.coating) text += fmt::format(" coated, n = {:g}", surface.coating->index);
     return text.empty() ? text : text.substr(1);
-}
-
-/// As many columns as are full; the last is not padded.
-std::string alignedTable(const std::vector<std::vector<std::string>>& rows) {
-    const auto width = [](const std::string& text) {
-        return static_cast<std::size_t>(
-            std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
-    };
-    std::vector<std::size_t> widths(rows.front().size(), 0);
-    for (const auto& row : rows)
-        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
-    std::string text;
-    for (const auto& row : rows) {
-        std::string line;
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            const std::string padding(widths[i] - width(row[i]), ' ');
-            const bool toTheLeft = i == 1 || i + 1 == row.size();  // words
-            line += "  " + (toTheLeft ? row[i] + padding : padding + row[i]);
-        }
-        text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-    }
-    return text;
 }
 
 }  // namespace
@@ -223,7 +203,7 @@ ExitCode runLensInfo(const LensInfoCommand& command) {
     fmt::print("{}{}\n{}\n\n", p.name, p.zoomPosition.empty() ? "" : ", at " + p.zoomPosition,
                p.source);
     for (const auto& [label, value] : infoRows(info)) fmt::print("  {:<22}{}\n", label, value);
-    fmt::print("\n{}", alignedTable(surfaceTable(p)));
+    fmt::print("\n{}", alignedTable(surfaceTable(p), "rlrrrrrrrl"));
     if (!p.notes.empty()) fmt::print("\n{}\n", p.notes);
     return ExitCode::success;
 }

@@ -1,0 +1,37 @@
+#include <algorithm>
+
+#include "tests/support/temporary_folder.h"
+#include "tests/tools/command_outcome.h"
+#include "tools/text_table.h"
+
+using namespace etendue;
+
+TEST_CASE("Text table: columns are as wide as their widest cell, words to the left") {
+    const std::string table = alignedTable({{"lens", "µm"}, {"a", "1.25"}, {"tessar", "3"}}, "lr");
+    CHECK(table == "  lens      µm\n  a       1.25\n  tessar     3\n");
+}
+
+TEST_CASE("Lens command: trade prints a row for every fit, and writes them as CSV and as a plot") {
+    const TemporaryFolder folder;
+    const std::string csv = (folder / "trade.csv").string(), svg = (folder / "trade.svg").string();
+    const Outcome outcome =
+        run("lens trade double-gauss-100mm tessar-100mm --terms 4,6 --degree 3 --basis axial "
+            "--form two-point --csv " +
+            csv + " --plot " + svg);
+    CHECK(outcome.code == 0);
+    CHECK(contains(outcome.output, "mul-adds"));
+    const std::string rows = readFile(csv);
+    CHECK(std::ranges::count(rows, '\n') == 5);
+    CHECK(rows.starts_with("lens,form,basis,terms,degree,multiply_adds,direction_mrad_rms,"));
+    CHECK(contains(rows, "tessar-100mm,two-point,axial,6,3,"));
+    CHECK(contains(readFile(svg), "</svg>"));
+    const Outcome json = run(
+        "lens trade double-gauss-100mm --terms 4 --degree 3 --basis axial --form two-point --json");
+    CHECK(contains(json.output, "\"connect_lost_percent\": 0"));
+}
+
+TEST_CASE("Lens command: trade without a lens, or with a basis that does not suit it, is refused") {
+    CHECK(run("lens trade").code == 64);
+    CHECK(run("lens trade anamorphic-80x90mm --basis axial").code == 64);
+    CHECK(run("lens trade double-gauss-100mm --form other").code == 64);
+}

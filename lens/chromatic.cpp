@@ -13,9 +13,10 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 double lateralColourMm(const TracedLens& lens, const Eigen::Vector2d& along, double heightMm,
                        double wavelengthNm, double focusDistanceMm) {
     const SensorPoint sensor{heightMm * along};
+    const AperturePoint middle{{0.0, 0.0}};
     const std::optional<Eigen::Vector3d> target = objectPoint(lens, sensor, focusDistanceMm);
-    if (!target) return none;
-    const auto found = lens.connect(*target, {{0.0, 0.0}}, wavelengthNm);
+    if (!target || !lens.trace(sensor, middle, dLineNm)) return none;
+    const auto found = lens.connect(*target, middle, wavelengthNm);
     return found ? found->mm.dot(along) - heightMm : none;
 }
 

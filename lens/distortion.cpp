@@ -12,6 +12,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+const AperturePoint stopCentre{{0.0, 0.0}};
+
 double angleFromAxis(const Eigen::Vector3d& direction) {
     return std::atan2(std::hypot(direction.x(), direction.y()), direction.z());
 }
@@ -129,7 +131,7 @@ std::vector<FieldRay> chiefRays(const TracedLens& lens, const Eigen::Vector2d& s
             const Eigen::Vector2d share(2.0 * i / (grid - 1) - 1.0, 2.0 * j / (grid - 1) - 1.0);
             const Eigen::Vector2d sensor = share.cwiseProduct(sensorHalfSizeMm);
             if (sensor.norm() > imageRadiusMm) continue;
-            if (const auto ray = atLine.chiefRay({sensor}))
+            if (const auto ray = atLine.trace({sensor}, stopCentre))
                 rays.push_back({sensor, ray->direction});
         }
     return rays;
@@ -158,7 +160,7 @@ std::vector<DistortionPoint> distortionCurve(const TracedLens& lens, const Eigen
     constexpr double nearAxis = 1e-3;  // of the highest: distortion there is its square
     const MonochromaticLens atLine(lens, dLineNm);
     const auto angleAt = [&](double height) {
-        const std::optional<ExitRay> ray = atLine.chiefRay({height * along});
+        const std::optional<ExitRay> ray = atLine.trace({height * along}, stopCentre);
         return ray ? angleFromAxis(ray->direction) : std::numeric_limits<double>::quiet_NaN();
     };
     const double first = nearAxis * highestMm;

@@ -14,8 +14,8 @@
 
 namespace etendue {
 
-/// A chief ray at the d line: where it meets the sensor, and its direction in the scene, lens
-/// space.
+/// A chief ray at the d line, one that no rim blocks: where it meets the sensor, and its direction
+/// in the scene, lens space.
 struct FieldRay {
     Eigen::Vector2d sensorMm;
     Eigen::Vector3d direction;

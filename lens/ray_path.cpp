@@ -6,7 +6,7 @@ namespace etendue {
 
 std::optional<ExitRay> middleRay(const TracedLens& lens, const MonochromaticLens& atLine,
                                  SensorPoint sensor) {
-    if (const std::optional<ExitRay> chief = atLine.chiefRay(sensor)) return chief;
+    if (const std::optional<ExitRay> chief = atLine.trace(sensor, {{0.0, 0.0}})) return chief;
     constexpr int grid = 16;
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     int passed = 0;

@@ -7,8 +7,8 @@
 
 namespace etendue {
 
-/// The chief ray from `sensor`, rims ignored; where no ray crosses the middle of the stop, the one
-/// through the middle of what passes. Empty where nothing passes either.
+/// The chief ray from `sensor`; where no light crosses the middle of the stop, the ray through the
+/// middle of what passes. Empty where nothing passes.
 std::optional<ExitRay> middleRay(const TracedLens& lens, const MonochromaticLens& atLine,
                                  SensorPoint sensor);
 

@@ -25,7 +25,8 @@ ReportAxis makeAxis(const TracedLens& lens, const FitDomain& domain, std::string
     constexpr int steps = 200;
     const MonochromaticLens atLine(lens, dLineNm);
     int reached = 0;
-    while (reached < steps && atLine.chiefRay({bright * (reached + 1) / steps * along})) ++reached;
+    while (reached < steps && atLine.trace({bright * (reached + 1) / steps * along}, {{0.0, 0.0}}))
+        ++reached;
     return {std::move(name), along, bright, edge, bright * reached / steps};
 }
 
@@ -66,7 +67,9 @@ std::optional<ReportSpot> makeSpot(const TracedLens& exact, const PolynomialLens
     const SpotSize size = spotSize(allExact);
     if (size.points == 0) return {};
     spot.exactRmsMm = size.rmsRadiusMm;
-    spot.fittedRmsMm = spotSize(allFitted).rmsRadiusMm;
+    const SpotSize fittedSize = spotSize(allFitted);
+    spot.fittedRmsMm =
+        fittedSize.points > 0 ? fittedSize.rmsRadiusMm : std::numeric_limits<double>::quiet_NaN();
     const Eigen::Vector2d across(-axis.along.y(), axis.along.x());
     for (auto* lines : {&spot.exact, &spot.fitted})
         for (std::vector<Eigen::Vector2d>& points : *lines)
@@ -93,10 +96,10 @@ std::vector<ReportSpot> makeSpots(const TracedLens& exact, const PolynomialLens&
 
 ReportCurves makeCurves(const TracedLens& exact, const PolynomialLens& fitted,
                         const ReportAxis& axis, double focusDistanceMm) {
-    constexpr int steps = 24, mapFields = 36, mapApertures = 36;
+    constexpr int steps = 24, mapFields = 36, mapApertures = 36, apertures = 3000;
     ReportCurves curves{axis,
                         distortionCurve(exact, axis.along, axis.brightMm, 2 * steps),
-                        illuminationCurve(exact, axis.along, axis.brightMm, steps + 1),
+                        illuminationCurve(exact, axis.along, axis.brightMm, steps + 1, apertures),
                         {},
                         {},
                         {},

@@ -35,7 +35,7 @@ struct ReportAxis {
     Eigen::Vector2d along;  // unit
     double brightMm;        // where the illumination falls to 5 % of that on the axis, or the edge
     double edgeMm;          // of the fit's domain
-    double chiefMm;         // as far as brightMm, if there are chief rays
+    double chiefMm;         // as far as that, if chief rays pass
 };
 
 struct ReportSpot {
@@ -44,8 +44,8 @@ struct ReportSpot {
     // For each of reportLinesNm, one for each aperture point: in the axis' frame, mm (outward,
     // across), from the centroid of the exact spot of all lines.
     std::array<std::vector<Eigen::Vector2d>, 3> exact, fitted;
-    double exactRmsMm, fittedRmsMm;
-    double largestShiftMm;  // between an exact ray and its fitted twin
+    double exactRmsMm, fittedRmsMm;  // not a number where nothing was found
+    double largestShiftMm;           // between an exact ray and its fitted twin
 };
 
 /// Curves along one axis.

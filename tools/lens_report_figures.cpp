@@ -136,8 +136,10 @@ Svg spotFigure(const ReportSpot& spot) {
         const Eigen::Vector2d corner(static_cast<double>(panel) * (box + gap), top);
         const Eigen::Vector2d centre = corner + Eigen::Vector2d(0.5 * box, 0.5 * box);
         svg.text(corner - Eigen::Vector2d(0.0, 10.0),
-                 fmt::format("{}, rms {:.4g} µm", panels[panel].first,
-                             micrometres * panels[panel].second),
+                 std::isfinite(panels[panel].second)
+                     ? fmt::format("{}, rms {:.4g} µm", panels[panel].first,
+                                   micrometres * panels[panel].second)
+                     : fmt::format("{}: no ray", panels[panel].first),
                  TextAnchor::start, "muted");
         svg.rectangle(corner, {box, box}, "frame");
         svg.line(centre - Eigen::Vector2d(0.5 * box, 0.0), centre + Eigen::Vector2d(0.5 * box, 0.0),

@@ -153,8 +153,8 @@ std::string distortion(const LensReport& report) {
     constexpr double fineMm = 1e-3;  // a fraction of any pixel
     if (fisheye && !pinhole)
         verdict = "The pinhole model ends below 90° and does not apply; use the fisheye model.";
-    else if (pinhole && fisheye && pinhole->residual.mostMm < fineMm)
-        verdict = "The pinhole model suits this lens: it is never off by a micrometre.";
+    else if (pinhole && fisheye && pinhole->residual.rmsMm < fineMm)
+        verdict = "The pinhole model suits this lens: it is off by less than a micrometre.";
     else if (pinhole && fisheye)
         verdict = pinhole->residual.rmsMm <= fisheye->residual.rmsMm
                       ? "The pinhole model suits this lens better."

@@ -41,6 +41,13 @@ TEST_CASE("lateralColourMm: none at the d line, and none where glass does not di
     CHECK(std::abs(lateralColourMm(*plain, along, 10.0, gLineNm, farAway)) < 1e-7);
 }
 
+TEST_CASE("lateralColourMm: none where the chief ray is blocked") {
+    const auto lens = makeTracedLens(loadPrescription(lensFile("anamorphic-80x90mm.toml")));
+    const Eigen::Vector2d along = Eigen::Vector2d::UnitY();
+    CHECK(std::isfinite(lateralColourMm(*lens, along, 5.0, fLineNm, farAway)));
+    CHECK(std::isnan(lateralColourMm(*lens, along, 7.2, cLineNm, farAway)));
+}
+
 TEST_CASE("lateralColourMm: a simple lens with its stop behind spreads blue inward") {
     // The stop is behind: chief rays cross the lens above the axis and are bent back toward it,
     // blue more than red.

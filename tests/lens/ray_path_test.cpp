@@ -70,6 +70,13 @@ TEST_CASE("middleRay: where no ray crosses the middle of the stop it goes throug
     REQUIRE_FALSE(atLine.chiefRay(corner).has_value());
     CHECK(middleRay(*lens, atLine, corner).has_value());
     CHECK_FALSE(middleRay(*lens, atLine, {{0.0, -60.0}}).has_value());
+    // Nor does one count that a rim blocks.
+    const SensorPoint vignetted{{0.0, -10.0}};
+    const auto chief = atLine.chiefRay(vignetted), middle = middleRay(*lens, atLine, vignetted);
+    REQUIRE(chief.has_value());
+    REQUIRE_FALSE(atLine.trace(vignetted, {{0.0, 0.0}}).has_value());
+    REQUIRE(middle.has_value());
+    CHECK((middle->origin - chief->origin).norm() > 1.0);
 }
 
 }  // namespace

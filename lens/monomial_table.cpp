@@ -1,5 +1,7 @@
 #include "lens/monomial_table.h"
 
+#include <algorithm>
+
 #include "lens/parallel.h"
 
 namespace etendue {
@@ -7,8 +9,16 @@ namespace etendue {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+MonomialTable::MonomialTable(std::vector<Exponents> terms, const MatrixXd& variables)
+    : terms_(std::move(terms)), variables_(variables) {
+    for (const Exponents& e : terms_)
+        for (std::size_t v = 0; v < e.size(); ++v) highest_[v] = std::max(highest_[v], e[v]);
+}
+
 Eigen::VectorXd MonomialTable::column(Index term) const {
-    return block({terms_[static_cast<std::size_t>(term)]}, 0, inputCount());
+    MatrixXd result;
+    fillBlock({terms_[static_cast<std::size_t>(term)]}, 0, inputCount(), result);
+    return result;
 }
 
 template <bool squared>
@@ -21,11 +31,12 @@ MatrixXd MonomialTable::project(const MatrixXd& right) const {
     parallelFor(static_cast<std::size_t>(parts), [&](std::size_t number) {
         const Index part = static_cast<Index>(number);
         MatrixXd sum = MatrixXd::Zero(termCount(), right.cols());
+        MatrixXd monomials;
         for (Index b = part * blocks / parts; b < (part + 1) * blocks / parts; ++b) {
             const Index begin = b * rowsPerBlock;
             const Index rows = std::min(rowsPerBlock, inputCount() - begin);
-            MatrixXd monomials = block(terms_, begin, rows);
-            if constexpr (squared) monomials = monomials.cwiseAbs2().eval();
+            fillBlock(terms_, begin, rows, monomials);
+            if constexpr (squared) monomials = monomials.cwiseAbs2();
             sum.noalias() += monomials.transpose() * right.middleRows(begin, rows);
         }
         sums[number] = std::move(sum);
@@ -38,24 +49,25 @@ MatrixXd MonomialTable::project(const MatrixXd& right) const {
 template MatrixXd MonomialTable::project<false>(const MatrixXd&) const;
 template MatrixXd MonomialTable::project<true>(const MatrixXd&) const;
 
-MatrixXd MonomialTable::block(const std::vector<Exponents>& terms, Index begin, Index rows) const {
-    MatrixXd result(rows, static_cast<Index>(terms.size()));
+void MonomialTable::fillBlock(const std::vector<Exponents>& terms, Index begin, Index rows,
+                              MatrixXd& result) const {
+    constexpr std::size_t variables = std::tuple_size_v<Exponents>;
+    std::array<Eigen::ArrayXXd, variables> powers;
+    for (std::size_t v = 0; v < variables; ++v) {
+        const auto x = variables_.col(static_cast<Index>(v)).segment(begin, rows).array();
+        powers[v] = Eigen::ArrayXXd::Ones(rows, highest_[v] + 1);
+        for (Index i = 1; i <= highest_[v]; ++i) powers[v].col(i) = powers[v].col(i - 1) * x;
+    }
     // Candidates come in nested loops over their powers: neighbours share most of their product.
-    std::array<Eigen::ArrayXd, 6> prefix;  // of the first i variables
-    prefix.fill(Eigen::ArrayXd::Ones(rows));
-    Exponents before{};
+    std::array<Eigen::ArrayXd, variables> prefix;  // of the first i variables
+    prefix[0] = Eigen::ArrayXd::Ones(rows);
+    result.resize(rows, static_cast<Index>(terms.size()));
     for (std::size_t t = 0; t < terms.size(); ++t) {
         std::size_t v = 0;
-        while (t > 0 && v < before.size() && terms[t][v] == before[v]) ++v;
-        for (; v < before.size(); ++v) {
-            prefix[v + 1] = prefix[v];
-            const auto x = variables_.col(static_cast<Index>(v)).segment(begin, rows).array();
-            for (int power = 0; power < terms[t][v]; ++power) prefix[v + 1] *= x;
-        }
-        result.col(static_cast<Index>(t)) = prefix.back();
-        before = terms[t];
+        while (t > 0 && v + 1 < variables && terms[t][v] == terms[t - 1][v]) ++v;
+        for (; v + 1 < variables; ++v) prefix[v + 1] = prefix[v] * powers[v].col(terms[t][v]);
+        result.col(static_cast<Index>(t)) = prefix[v] * powers[v].col(terms[t][v]);
     }
-    return result;
 }
 
 }  // namespace etendue

@@ -9,8 +9,7 @@ namespace etendue {
 class MonomialTable {
 public:
     /// `variables`: of each input in a row, kept by reference.
-    MonomialTable(std::vector<Exponents> terms, const Eigen::MatrixXd& variables)
-        : terms_(std::move(terms)), variables_(variables) {}
+    MonomialTable(std::vector<Exponents> terms, const Eigen::MatrixXd& variables);
 
     Eigen::Index termCount() const { return static_cast<Eigen::Index>(terms_.size()); }
     Eigen::Index inputCount() const { return variables_.rows(); }
@@ -28,11 +27,13 @@ public:
 private:
     template <bool squared>
     Eigen::MatrixXd project(const Eigen::MatrixXd& right) const;
-    Eigen::MatrixXd block(const std::vector<Exponents>& terms, Eigen::Index begin,
-                          Eigen::Index rows) const;
+    /// Inputs × terms, of `rows` inputs.
+    void fillBlock(const std::vector<Exponents>& terms, Eigen::Index begin, Eigen::Index rows,
+                   Eigen::MatrixXd& result) const;
 
     std::vector<Exponents> terms_;
     const Eigen::MatrixXd& variables_;
+    Exponents highest_{};  // power of each variable
 };
 
 }  // namespace etendue

@@ -29,13 +29,25 @@ Json jsonOf(const FisheyeDistortion& f) {
                          {"residual", jsonOf(f.residual)}});
 }
 
+/// Points in the frame of ReportSpot, those of rays that do not pass as null.
+Json pointsJson(const std::vector<Eigen::Vector2d>& points) {
+    return Json::object({{"outward_mm", column(points, [](const auto& p) { return p.x(); })},
+                         {"across_mm", column(points, [](const auto& p) { return p.y(); })}});
+}
+
 Json jsonOf(const ReportSpot& spot) {
+    Json lines = Json::array();
+    for (std::size_t line = 0; line < reportLinesNm.size(); ++line)
+        lines.add(Json::object({{"wavelength_nm", reportLinesNm[line]},
+                                {"exact", pointsJson(spot.exact[line])},
+                                {"fitted", pointsJson(spot.fitted[line])}}));
     return Json::object({{"axis", spot.axis.name},
                          {"height_mm", spot.heightMm},
                          {"field_degrees", spot.fieldDegrees},
                          {"exact_rms_mm", spot.exactRmsMm},
                          {"fitted_rms_mm", spot.fittedRmsMm},
-                         {"largest_shift_mm", spot.largestShiftMm}});
+                         {"largest_shift_mm", spot.largestShiftMm},
+                         {"lines", std::move(lines)}});
 }
 
 Json jsonOf(const ReportCurves& curves) {
@@ -94,6 +106,11 @@ Json jsonOf(const LensReport& report) {
     Json json = Json::object({{"lens", jsonOf(report.info)},
                               {"spots", list(report.spots)},
                               {"curves", list(report.curves)}});
+    const auto& focus = report.paraxialFocusMm;
+    json.add("paraxial_focus",
+             Json::object(
+                 {{"wavelength_nm", column(focus, [](const auto& p) { return p.x(); })},
+                  {"in_front_of_sensor_mm", column(focus, [](const auto& p) { return p.y(); })}}));
     if (report.pinhole) json.add("opencv_pinhole", jsonOf(*report.pinhole));
     if (report.fisheye) json.add("opencv_fisheye", jsonOf(*report.fisheye));
     json.add("fit", jsonOf(report.fit.fit));

@@ -54,8 +54,9 @@ TEST_CASE("Lens report: the page is whole, alone and without numbers that are no
     CHECK(countOf(page, "src=") == 0);
     CHECK(countOf(page, ">nan") + countOf(page, " nan") + countOf(page, "\"nan") == 0);
     CHECK(contains(page, "etendue lens report tessar-100mm --terms 16 --degree 7 -o "));
-    for (const char* key : {"\"spots\"", "\"opencv_pinhole\"", "\"opencv_fisheye\"",
-                            "\"vignetting\"", "\"direction_mrad_row_by_row\"", "\"two_step\""})
+    for (const char* key :
+         {"\"spots\"", "\"opencv_pinhole\"", "\"opencv_fisheye\"", "\"vignetting\"",
+          "\"direction_mrad_row_by_row\"", "\"two_step\"", "\"across_mm\"", "\"paraxial_focus\""})
         CHECK(contains(json, key));
     CHECK(countOf(json, "nan") == 0);
 }

@@ -109,8 +109,6 @@ std::optional<RayErrors> errorsOf(const FittedExits& fitted, const PupilSphere& 
                      std::abs(determinant - 1.0)};
 }
 
-}  // namespace
-
 ErrorSummary summarize(std::vector<double> magnitudes) {
     if (magnitudes.empty()) return {};
     double squares = 0.0;
@@ -121,6 +119,8 @@ ErrorSummary summarize(std::vector<double> magnitudes) {
     return {std::sqrt(squares / static_cast<double>(magnitudes.size())), magnitudes[rank - 1],
             magnitudes.back()};
 }
+
+}  // namespace
 
 FitErrors measureErrors(const LensFit& fit, const TracedLens& lens, std::size_t rays,
                         std::uint64_t seed) {

@@ -71,6 +71,4 @@ LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
 FitErrors measureErrors(const LensFit& fit, const TracedLens& lens, std::size_t rays,
                         std::uint64_t seed);
 
-ErrorSummary summarize(std::vector<double> magnitudes);
-
 }  // namespace etendue

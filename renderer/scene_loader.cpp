@@ -51,63 +51,6 @@ void loadEstimator(const ConfigTable& table, LoadedScene& loaded) {
     table.finish();
 }
 
-/// Lens axes in the world: +z toward `to`, +y up as far as it can be, +x to the viewer's left
-/// (docs/camera.md, "Spaces").
-Transform lookAt(Vec3d from, Vec3d to, Vec3d up) {
-    const Vec3d z = normalize(to - from);
-    const Vec3d x = normalize(cross(up, z));
-    return {x, cross(z, x), z, from};
-}
-
-Transform placeCamera(const ConfigTable& table) {
-    const Vec3d from = vector3(table, "from"), to = vector3(table, "to");
-    const Vec3d up = table.has("up") ? vector3(table, "up") : Vec3d{0, 1, 0};
-    if (!(length(to - from) > 0.0)) table.fail("to", "must differ from 'from'");
-    if (!(length(cross(up, to - from)) > 1e-9 * length(up) * length(to - from)))
-        table.fail("up", "must not be parallel to the viewing direction");
-    return lookAt(from, to, up);
-}
-
-/// Focal length, or the horizontal field of view that the sensor's width turns into one.
-double focalLengthMm(const ConfigTable& table, double sensorWidthMm) {
-    if (!table.has("fov")) return table.number("focal_length_mm", {1e-3, 1e5}, 50.0);
-    if (table.has("focal_length_mm")) table.fail("fov", "give either fov or focal_length_mm");
-    const double fovDegrees = table.number("fov", {0.01, 179.0});
-    return 0.5 * sensorWidthMm / std::tan(fovDegrees * std::numbers::pi / 360.0);
-}
-
-/// Distance in front of a thin lens, when `distance` is counted from the sensor as on a lens
-/// barrel: u + v = d with 1/u + 1/v = 1/f.
-double distanceFromLensMm(const ConfigTable& table, double distanceMm, double focalMm) {
-    if (std::isinf(distanceMm)) return distanceMm;
-    if (!(distanceMm > 4.0 * focalMm))
-        table.fail("focus_distance", "counted from the sensor, must exceed four focal lengths: " +
-                                         std::to_string(4e-3 * focalMm) + " m");
-    return 0.5 * (distanceMm + std::sqrt(distanceMm * (distanceMm - 4.0 * focalMm)));
-}
-
-void loadCamera(const ConfigTable& table, LoadedScene& loaded) {
-    CameraSettings settings;
-    settings.width = loaded.film.width;
-    settings.height = loaded.film.height;
-    settings.worldFromLens = placeCamera(table);
-    settings.sensorWidthMm = table.number("sensor_width_mm", {1e-3, 1e5}, 36.0);
-    settings.exposureStops = table.number("exposure", {-60, 60}, 0.0);
-    const std::string model = table.choice("model", {"pinhole", "thin-lens"}, "pinhole");
-    const double focalMm = focalLengthMm(table, settings.sensorWidthMm);
-    std::shared_ptr<const LensModel> lens;
-    if (model == "pinhole") {
-        lens = makePinhole(focalMm);
-    } else {
-        loaded.fNumber = table.number("f_number", {0.1, 1e4});
-        loaded.focusDistance = table.number("focus_distance", {1e-6, Range::infinity});
-        const double u = distanceFromLensMm(table, loaded.focusDistance * 1e3, focalMm);
-        lens = makeThinLens(focalMm, u, 0.5 * focalMm / loaded.fNumber);
-    }
-    table.finish();
-    loaded.camera = std::make_unique<Camera>(std::move(lens), settings);
-}
-
 /// Where nobody placed a camera: outside the scene's bounds, from the front, a little from the
 /// right and above, with all of it in view.
 void addAutomaticCamera(LoadedScene& loaded) {
@@ -185,7 +128,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     root.files("include");
     loaded.film = loadFilm(root.table("film"));
     loadEstimator(root.table("estimator"), loaded);
-    if (root.has("camera")) loadCamera(root.table("camera"), loaded);
+    if (root.has("camera")) loadCamera(root.table("camera"), options, loading, loaded);
     loadMaterials(root.tables("material"), loading);
     if (isModel) addModel(file, loading);
     loadMeshes(root.tables("mesh"), root.tables("instance"), loading);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/config.h"
@@ -36,6 +38,9 @@ struct LoadedScene {
 struct LoadOptions {
     std::vector<std::string> overrides;  // "key=value", after the file
     int threads = 1;
+    std::filesystem::path fitCache = {};  // folder of lens fits; empty: none is kept
+    /// Hears how far a lens fit is: share in 0–1, and what is being done.
+    std::function<void(double, std::string_view)> fitProgress = {};
 };
 
 /// `file` is a scene (.toml) or a bare model (.obj), which gets a camera and, if nothing in it

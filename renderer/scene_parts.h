@@ -8,7 +8,7 @@
 
 #include "config/config.h"
 #include "renderer/obj_loader.h"
-#include "renderer/scene.h"
+#include "renderer/scene_loader.h"
 
 namespace etendue {
 
@@ -21,6 +21,13 @@ struct LoadingScene {
     std::map<std::string, std::shared_ptr<const Texture>> textures;  // by path and encoding
     const Material* defaultMaterial = nullptr;
 };
+
+/// [camera]
+void loadCamera(const ConfigTable& table, const LoadOptions& options, LoadingScene& loading,
+                LoadedScene& loaded);
+/// Lens axes in the world: +z toward `to`, +y up as far as it can be, +x to the viewer's left
+/// (docs/camera.md, "Which way is up").
+Transform lookAt(Vec3d from, Vec3d to, Vec3d up);
 
 /// [[material]]
 void loadMaterials(const std::vector<ConfigTable>& tables, LoadingScene& loading);

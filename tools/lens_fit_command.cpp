@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
@@ -46,30 +45,6 @@ int rayCost(const LensFit& fit) {
 double share(std::int64_t part, std::int64_t whole) {
     return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
 }
-
-/// How far a fit is, on standard error: a bar on a terminal, elsewhere a line for each stage.
-class FitBar {
-public:
-    void operator()(double share, std::string_view stage) {
-        if (isTerminal_) {
-            constexpr std::size_t width = 28;
-            const auto filled =
-                static_cast<std::size_t>(std::lround(share * static_cast<double>(width)));
-            fmt::print(stderr, "\r[{}{}] {}\033[K", std::string(filled, '#'),
-                       std::string(width - filled, '.'), stage);
-        } else if (stage != stage_) {
-            fmt::print(stderr, "  {:3.0f} %  {}\n", perCent * share, stage);
-        }
-        stage_ = stage;
-    }
-    void clear() const {
-        if (isTerminal_ && !stage_.empty()) fmt::print(stderr, "\r\033[K");
-    }
-
-private:
-    bool isTerminal_ = isatty(STDERR_FILENO) != 0;
-    std::string stage_;
-};
 
 Json jsonOf(const FitDomain& domain) {
     return Json::object(
@@ -184,8 +159,9 @@ ObtainedFit obtainFit(const Prescription& prescription, const LensChoice& choice
         isFromCache = false;
         fmt::print(stderr, "{}\n", sentence);
     };
-    LensFit fit = cachedFit(prescription, domain, settings, cache, notice,
-                            [&](double share, std::string_view stage) { bar(share, stage); });
+    LensFit fit =
+        cachedFit(prescription, domain, settings, cache, notice,
+                  [&](double share, std::string_view stage) { bar.update(share, stage); });
     bar.clear();
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     const std::filesystem::path file =

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 
 namespace etendue {
@@ -40,6 +41,22 @@ std::string formatDuration(double seconds) {
     const auto total = static_cast<long>(seconds + 0.5);
     if (total < 3600) return fmt::format("{}:{:02}", total / 60, total % 60);
     return fmt::format("{}:{:02}:{:02}", total / 3600, total / 60 % 60, total % 60);
+}
+
+FitBar::FitBar() : isTerminal_(isatty(STDERR_FILENO) != 0) {}
+
+void FitBar::update(double share, std::string_view stage) {
+    if (isTerminal_) {
+        const int filled = static_cast<int>(std::lround(share * barWidth));
+        say(fmt::format("\r[{:#<{}}{:.<{}}] {}\033[K", "", filled, "", barWidth - filled, stage));
+    } else if (stage != stage_) {
+        say(fmt::format("  {:3.0f} %  {}\n", 100.0 * share, stage));
+    }
+    stage_ = stage;
+}
+
+void FitBar::clear() const {
+    if (isTerminal_ && !stage_.empty()) say("\r\033[K");
 }
 
 void say(const std::string& text) {

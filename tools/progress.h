@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "renderer/render.h"
 
@@ -20,6 +21,18 @@ private:
     void write(const RenderProgress& progress, bool isLast);
     ProgressStyle style_;
     double lastSeconds_ = -1e9;
+};
+
+/// How far a lens fit is, on standard error: a bar on a terminal, elsewhere a line for each stage.
+class FitBar {
+public:
+    FitBar();
+    void update(double share, std::string_view stage);
+    void clear() const;
+
+private:
+    bool isTerminal_;
+    std::string stage_;
 };
 
 /// To standard error, at once. If nobody can read it that is no reason to lose a render.

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <csignal>
 
+#include "lens/fit_cache.h"
 #include "renderer/parallel.h"
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
@@ -111,7 +112,7 @@ void printNotes(const LoadedScene& loaded, bool isQuiet) {
 }
 
 LoadOptions loadOptions(const RenderCommand& command, int threads) {
-    LoadOptions options{command.overrides, threads};
+    LoadOptions options{command.overrides, threads, fitCacheDirectory()};
     if (!command.size.empty()) {
         options.overrides.push_back(fmt::format("film.width={}", command.size[0]));
         options.overrides.push_back(fmt::format("film.height={}", command.size[1]));
@@ -159,7 +160,14 @@ ExitCode runRender(const RenderCommand& command) {
     checkWritable(command.output, ".exr");
     checkWritable(command.preview, ".png");
     const int threads = command.threads.value_or(hardwareThreads());
-    const LoadedScene loaded = loadScene(command.scene, loadOptions(command, threads));
+    LoadOptions options = loadOptions(command, threads);
+    FitBar fitBar;
+    if (!isQuiet && command.progress != ProgressStyle::json)
+        options.fitProgress = [&](double share, std::string_view stage) {
+            fitBar.update(share, stage);
+        };
+    const LoadedScene loaded = loadScene(command.scene, options);
+    fitBar.clear();
     printNotes(loaded, isQuiet);
 
     Film film(windowFor(command, loaded.film), layersFor(command));
@@ -193,7 +201,8 @@ ExitCode runRender(const RenderCommand& command) {
 }
 
 ExitCode runCheck(const CheckCommand& command) {
-    const LoadedScene loaded = loadScene(command.scene, {command.overrides, hardwareThreads()});
+    const LoadedScene loaded =
+        loadScene(command.scene, {command.overrides, hardwareThreads(), fitCacheDirectory()});
     printNotes(loaded, false);
     const BoundingSphere bounds = loaded.scene->bounds();
     fmt::print("{}: valid\n", command.scene.string());

@@ -124,17 +124,20 @@ std::string domainTest(const FitDomain& domain) {
 }
 
 std::string rimTest(const ClipFit& clip) {
-    std::vector<CodeOutput> heights;
+    std::vector<CodeOutput> squares;
     std::string test;
-    for (std::size_t i = 0; i < clip.surfaces.size(); ++i) {
-        heights.push_back({static_cast<int>(i), "height" + std::to_string(clip.surfaces[i])});
-        test += (i == 0 ? "" : " && ") + heights.back().name + " <= 1.0";
-    }
-    std::string body = polynomialCode(clip.squaredHeights, {false, false}, heights);
+    const auto add = [&](const char* name, std::size_t surface) {
+        const int row = static_cast<int>(squares.size());
+        squares.push_back({row, name + std::to_string(surface)});
+        test += (row == 0 ? "" : " && ") + squares.back().name + " <= 1.0";
+    };
+    for (const std::size_t surface : clip.surfaces) add("height", surface);
+    for (const std::size_t surface : clip.reflecting) add("sine", surface);
+    std::string body = polynomialCode(clip.squares, {false, false}, squares);
     // A polynomial calls its second input p; here it is the aperture point.
     return std::string(
                "\n/// By squared heights on the surfaces that clip, in units of the squared "
-               "semi-apertures.\nFUNCTION bool @passesRims") +
+               "semi-apertures, and squared sines of refraction.\nFUNCTION bool @passesRims") +
            "(REAL sx, REAL sy, REAL px, REAL py, MAYBE_UNUSED REAL nm) {\n" + body + "    return " +
            test + ";\n}\n";
 }

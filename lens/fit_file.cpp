@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* formatName = "etendue lens fit 3";
+constexpr const char* formatName = "etendue lens fit 4";
 constexpr std::uintmax_t largestFileBytes = 64u << 20;
 
 struct Refusal : std::runtime_error {
@@ -193,6 +193,13 @@ RayCounts countsFrom(const Json& json) {
             json.at("folded_light").get<double>()};
 }
 
+std::vector<std::size_t> surfacesFrom(const Json& json) {
+    std::vector<std::size_t> surfaces;
+    for (const Json& surface : json)
+        surfaces.push_back(static_cast<std::size_t>(wholeFrom(surface, 0, 1000)));
+    return surfaces;
+}
+
 Json jsonOf(const LensFit& fit) {
     return {{"prescription", hex(fit.prescriptionHash)},
             {"domain", jsonOf(fit.domain)},
@@ -201,7 +208,8 @@ Json jsonOf(const LensFit& fit) {
             {"aperture", jsonOf(fit.aperture)},
             {"clip",
              {{"surfaces", fit.clip.surfaces},
-              {"squared_heights", jsonOf(fit.clip.squaredHeights)},
+              {"reflecting", fit.clip.reflecting},
+              {"squares", jsonOf(fit.clip.squares)},
               {"wrongly_accepted", fit.clipErrors.wronglyAccepted},
               {"wrongly_blocked", fit.clipErrors.wronglyBlocked}}},
             {"start",
@@ -220,10 +228,10 @@ LensFit fitFrom(const Json& json) {
     fit.exit = polynomialFrom(json.at("exit"));
     fit.aperture = polynomialFrom(json.at("aperture"));
     const Json& clip = json.at("clip");
-    for (const Json& surface : clip.at("surfaces"))
-        fit.clip.surfaces.push_back(static_cast<std::size_t>(wholeFrom(surface, 0, 1000)));
-    fit.clip.squaredHeights = polynomialFrom(clip.at("squared_heights"));
-    if (fit.clip.squaredHeights.outputs.total() != static_cast<int>(fit.clip.surfaces.size()))
+    fit.clip.surfaces = surfacesFrom(clip.at("surfaces"));
+    fit.clip.reflecting = surfacesFrom(clip.at("reflecting"));
+    fit.clip.squares = polynomialFrom(clip.at("squares"));
+    if (fit.clip.squares.outputs.total() != static_cast<int>(fit.clip.count()))
         throw Refusal("clipping surfaces and polynomials differ in number");
     fit.clipErrors = {clip.at("wrongly_accepted").get<double>(),
                       clip.at("wrongly_blocked").get<double>()};

@@ -1,5 +1,5 @@
-// Clipping: which rays a lens' rims block, as polynomials of where a ray starts and where it
-// crosses the stop, so that it is known without tracing.
+// Clipping: which rays a lens' rims block and which are totally reflected, as polynomials of where
+// a ray starts and where it crosses the stop, so that it is known without tracing.
 #pragma once
 
 #include <span>
@@ -9,11 +9,14 @@
 
 namespace etendue {
 
-/// A ray passes the rims if on each of these surfaces its squared height, in units of the squared
-/// semi-aperture, is at most 1. The stop is not among them: the aperture point is known.
+/// A ray passes if on each of `surfaces` its squared height, in units of the squared semi-aperture,
+/// is at most 1, and behind each of `reflecting` the squared sine of refraction. The stop is not
+/// among them: the aperture point is known.
 struct ClipFit {
-    std::vector<std::size_t> surfaces;  // of the prescription, ascending
-    SparsePolynomial squaredHeights;    // of (s, a, λ): a scalar for each surface
+    std::vector<std::size_t> surfaces, reflecting;  // of the prescription, ascending
+    SparsePolynomial squares;  // of (s, a, λ): a scalar for each surface, then for each reflecting
+
+    std::size_t count() const { return surfaces.size() + reflecting.size(); }
 };
 
 struct ClipErrors {
@@ -23,20 +26,21 @@ struct ClipErrors {
 
 struct ClipSettings {
     int terms = 32;
-    int degree = 9;
+    int degree = 11;
     std::size_t rays = 6000;
 
     bool operator==(const ClipSettings&) const = default;
 };
 
-/// The outermost and the rear surface, and as many between as it takes for the rays that these
-/// accept and another blocks to be one in 2000. At most mostOutputs (polynomial.h).
+/// The outermost and the rear surface, and as many others, for their rims or for total reflection,
+/// as it takes for the rays that these accept and another ends to be one in 2000. At most
+/// mostOutputs (polynomial.h).
 ClipFit fitClip(const TracedLens& lens, const FitDomain& domain, PolynomialBasis basis,
                 const ClipSettings& settings = {});
 
-/// `squaredHeights`: the polynomial's values.
-inline bool passesRims(std::span<const double> squaredHeights) {
-    for (const double squared : squaredHeights)
+/// `squares`: the polynomial's values.
+inline bool passesRims(std::span<const double> squares) {
+    for (const double squared : squares)
         if (!(squared <= 1.0)) return false;
     return true;
 }

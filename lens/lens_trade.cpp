@@ -105,7 +105,7 @@ TradeRow measureTrade(const Prescription& prescription, const FitDomain& domain,
     row.fitSeconds = secondsSince(start);
     row.settings = settings;
     row.multiplyAdds = rayMultiplyAdds(fit);
-    row.rimMultiplyAdds = multiplyAdds(fit.clip.squaredHeights);
+    row.rimMultiplyAdds = multiplyAdds(fit.clip.squares);
     row.errors = fit.errors;
     row.clipErrors = fit.clipErrors;
     const PolynomialLens lens(prescription, fit, Aperture(domain.apertureRadiusMm));

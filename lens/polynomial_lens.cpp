@@ -12,8 +12,8 @@ PolynomialLens::PolynomialLens(const Prescription& prescription, const LensFit& 
     : map_(prescription, fit),
       domain_(fit.domain),
       aperture_(aperture),
-      squaredHeights_(fit.clip.squaredHeights),
-      rims_(fit.clip.surfaces.size()),
+      clip_(fit.clip.squares),
+      clipCount_(fit.clip.count()),
       start_(fit.start.sensor),
       widestField_(fit.start.widestField) {
     if (fit.prescriptionHash != contentHash(prescription))
@@ -43,9 +43,8 @@ ConnectStatus PolynomialLens::statusOf(SensorPoint sensor, const ExitRay& ray,
                                        AperturePoint aperture, double wavelengthNm) const {
     if (!domain_.contains(sensor, aperture, wavelengthNm)) return ConnectStatus::outOfField;
     if (!(turning(ray) > 0.0)) return ConnectStatus::blocked;
-    const PolynomialValues<double> heights =
-        squaredHeights_.values({sensor.mm, aperture.mm, wavelengthNm});
-    return passesRims({heights.data(), rims_}) ? ConnectStatus::found : ConnectStatus::blocked;
+    const PolynomialValues<double> squares = clip_.values({sensor.mm, aperture.mm, wavelengthNm});
+    return passesRims({squares.data(), clipCount_}) ? ConnectStatus::found : ConnectStatus::blocked;
 }
 
 AperturePoint PolynomialLens::sampleAperture(Eigen::Vector2d u) const {

@@ -45,8 +45,8 @@ private:
     FittedMap map_;
     FitDomain domain_;
     Aperture aperture_;
-    PolynomialEvaluator<double> squaredHeights_;
-    std::size_t rims_;
+    PolynomialEvaluator<double> clip_;
+    std::size_t clipCount_;
     PolynomialEvaluator<double> start_;
     double widestField_;
     double focalLengthMm_;

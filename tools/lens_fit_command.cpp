@@ -76,10 +76,14 @@ void printReport(const Prescription& prescription, const ObtainedFit& obtained) 
                    row.summary.rms, row.summary.percentile999, row.summary.most);
     fmt::print("    unsolved              {} rays\n\n", fit.errors.unsolved);
     fmt::print(
-        "  rims      surface {}; {:.3f} % of the accepted rays would be blocked, {:.3f} % of those "
+        "  rims      surface {}{}; {:.3f} % of the accepted rays would be blocked, {:.3f} % of "
+        "those "
         "that pass are refused\n",
-        fmt::join(fit.clip.surfaces, ", "), perCent * fit.clipErrors.wronglyAccepted,
-        perCent * fit.clipErrors.wronglyBlocked);
+        fmt::join(fit.clip.surfaces, ", "),
+        fit.clip.reflecting.empty()
+            ? ""
+            : fmt::format("; total reflection at {}", fmt::join(fit.clip.reflecting, ", ")),
+        perCent * fit.clipErrors.wronglyAccepted, perCent * fit.clipErrors.wronglyBlocked);
 }
 
 }  // namespace
@@ -103,7 +107,7 @@ std::string describe(const FitDomain& domain) {
 
 std::string describeCost(const LensFit& fit) {
     return fmt::format("{} multiply-adds for the ray, {} for the rims", rayCost(fit),
-                       multiplyAdds(fit.clip.squaredHeights));
+                       multiplyAdds(fit.clip.squares));
 }
 
 std::vector<FitErrorRow> errorRows(const FitErrors& errors) {
@@ -131,7 +135,7 @@ Json jsonOf(const LensFit& fit) {
          {"terms", fit.settings.terms},
          {"degree", fit.settings.degree},
          {"multiply_adds", rayCost(fit)},
-         {"rim_multiply_adds", multiplyAdds(fit.clip.squaredHeights)},
+         {"rim_multiply_adds", multiplyAdds(fit.clip.squares)},
          {"domain", jsonOf(fit.domain)},
          {"training", Json::object({{"drawn", fit.training.drawn},
                                     {"passed", fit.training.passed},

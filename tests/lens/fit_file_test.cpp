@@ -71,11 +71,12 @@ TEST_CASE("Fit file: what is read has the bits that were written") {
     checkSame(content.fit->exit, someFit().exit);
     checkSame(content.fit->aperture, someFit().aperture);
     checkSame(content.fit->slope, someFit().slope);
-    checkSame(content.fit->clip.squaredHeights, someFit().clip.squaredHeights);
+    checkSame(content.fit->clip.squares, someFit().clip.squares);
     checkSame(content.fit->start.sensor, someFit().start.sensor);
     CHECK(content.fit->start.widestField == someFit().start.widestField);
     CHECK(content.fit->start.errorMm == someFit().start.errorMm);
     CHECK(content.fit->clip.surfaces == someFit().clip.surfaces);
+    CHECK(content.fit->clip.reflecting == someFit().clip.reflecting);
     CHECK(content.fit->errors.directionMrad.rms == someFit().errors.directionMrad.rms);
     CHECK(content.fit->errors.etendue.most == someFit().errors.etendue.most);
     CHECK(content.fit->training.drawn == someFit().training.drawn);

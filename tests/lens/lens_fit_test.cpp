@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "lens/fit_domain.h"
 #include "lens/polynomial.h"
 #include "tests/lens/fitted_lenses.h"
 
@@ -119,7 +120,7 @@ TEST_CASE("Lens fit: clipping by polynomials decides as the exact trace does") {
     CHECK(fit.clipErrors.wronglyBlocked < 0.005);
     // A squared height on the front surface is that of the ray on the pupil sphere, which is it.
     const TracedLens lens = lensOf(doubleGauss(), doubleGaussDomain());
-    const PolynomialEvaluator<double> evaluator(fit.clip.squaredHeights);
+    const PolynomialEvaluator<double> evaluator(fit.clip.squares);
     for (const FitRay& ray : drawFitRays(lens, fit.domain, 200, 8).rays) {
         const double expected =
             (ray.pupil.x * ray.pupil.x + ray.pupil.y * ray.pupil.y) / (20.0 * 20.0);
@@ -176,6 +177,22 @@ TEST_CASE("Lens fit: directions through an aspheric fisheye are off by 0.45 mrad
 TEST_CASE("Lens fit: directions through a 220 degree fisheye are off by 0.18 mrad, then 0.054" *
           doctest::test_suite("statistical")) {
     checkAxialAccuracy("fisheye-220-6mm-f2.8.toml", {12.0, 12.0}, 12.0, 0.18, 0.054);
+}
+
+TEST_CASE("Lens fit: hardly a ray passes that a rim or total reflection ends, on any lens" *
+          doctest::test_suite("statistical")) {
+    for (const ShippedLens& shipped : shippedLenses()) {
+        CAPTURE(shipped.file);
+        const Prescription prescription = load(shipped);
+        const bool isAxial = !isAnamorphic(prescription);
+        const FitDomain domain = fitDomain(prescription, {});
+        const TracedLens lens = lensOf(prescription, domain);
+        const ClipFit clip =
+            fitClip(lens, domain, isAxial ? PolynomialBasis::axial : PolynomialBasis::twoPlane);
+        const ClipErrors errors = measureClip(clip, lens, domain, 20'000, 9);
+        CHECK(errors.wronglyAccepted < 0.005);
+        CHECK(errors.wronglyBlocked < 0.005);
+    }
 }
 
 TEST_CASE("Lens fit: directions through the anamorphic lens are off by 0.1 mrad" *

@@ -21,16 +21,10 @@ Eigen::Matrix<double, Rows, 2> block(const PolynomialResult<double>& result, std
 /// From the values of the exit polynomials and the derivatives of the pupil state by s.
 std::optional<ExitRay> exitRayOf(const PupilSphere& sphere, const PolynomialValues<double>& values,
                                  const PupilDerivatives& bySensor, double throughput) {
-    const auto component = [&](Eigen::Index row) {
-        Dual<2> result(values[static_cast<std::size_t>(row)]);
-        result.partials = {bySensor(row, 0), bySensor(row, 1)};
-        return result;
-    };
-    const auto ray =
-        sphere.ray(PupilState<Dual<2>>{component(0), component(1), component(2), component(3)});
+    const auto ray = sphere.ray({values[0], values[1], values[2], values[3]}, bySensor);
     if (!ray) return {};
-    return ExitRay{toEigen(valueOf(ray->origin)), toEigen(valueOf(ray->direction)),
-                   partials(ray->origin), partials(ray->direction), throughput};
+    return ExitRay{ray->origin, ray->direction, ray->originDerivatives, ray->directionDerivatives,
+                   throughput};
 }
 
 }  // namespace

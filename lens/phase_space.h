@@ -42,6 +42,12 @@ PlaneState<T> planeState(const LensRay<T>& ray, double planeZMm) {
     return {ray.origin.x + slopeX * depth, ray.origin.y + slopeY * depth, slopeX, slopeY};
 }
 
+/// A ray and how it moves with two variables.
+struct DifferentialRay {
+    Eigen::Vector3d origin, direction;
+    Eigen::Matrix<double, 3, 2> originDerivatives, directionDerivatives;
+};
+
 /// The sphere that touches the first surface at its vertex, the origin, with its curvature there;
 /// the plane z = 0 for a plane and for a cylinder. Fields beyond 90° need a sphere.
 class PupilSphere {
@@ -53,8 +59,9 @@ public:
     std::optional<PupilState<T>> state(const LensRay<T>& ray) const;
     /// The inverse. Empty when the point is beyond the equator or the direction longer than 1.
     std::optional<LensRay<double>> ray(const PupilState<double>& state) const;
-    template <int N>
-    std::optional<LensRay<Dual<N>>> ray(const PupilState<Dual<N>>& state) const;
+    /// With the derivatives that those of (x, y, directionX, directionY) by two variables make.
+    std::optional<DifferentialRay> ray(const PupilState<double>& state,
+                                       const Eigen::Matrix<double, 4, 2>& derivatives) const;
 
     /// 1/mm; positive if the centre lies toward the scene.
     double curvature() const { return shape_.curvature; }
@@ -67,11 +74,8 @@ private:
     struct Frame {
         Vector3<T> x, y, normal;
     };
-    /// `share` is 1/(1 + normal.z).
     template <class T>
-    static Frame<T> frameAbout(const Vector3<T>& normal, const T& share);
-    template <class T>
-    std::optional<LensRay<T>> rayOf(const PupilState<T>& state) const;
+    static Frame<T> frameAbout(const Vector3<T>& normal);
 
     SurfaceShape shape_;
 };

@@ -57,7 +57,7 @@ public:
     TargetSolver(const Exit& exit, double focalLengthMm)
         : exit_(exit), longestStepMm_(0.5 * focalLengthMm) {}
 
-    static constexpr double toleranceRadians = 1e-8;
+    static constexpr double toleranceRadians = 1e-6;
 
     /// From the sensor point `s`, or where no ray leaves there, from one nearer the axis: rays that
     /// graze the first surface end the field abruptly. Steps are halved until the miss shrinks.
@@ -91,7 +91,7 @@ public:
             ray = next;
             miss = nextMiss;
         }
-        // One more step squares what is missing: far below rounding.
+        // One more step squares what is missing.
         return Aimed{s + miss.sensorStep, *ray};
     }
 

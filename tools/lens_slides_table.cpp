@@ -38,7 +38,7 @@ std::vector<SlidesEntry> measureAll() {
     std::vector<SlidesEntry> entries;
     for (std::size_t lens = 0; lens < slidesLenses.size(); ++lens) {
         const std::string name(slidesLenses[lens]);
-        const SlidesMeasurement measurement(loadPrescription(LensChoice{name}));
+        const SlidesMeasurement measurement(loadPrescription(findLensFile(name)));
         for (const SlidesRow& row : slidesRows()) {
             fmt::print(stderr, "{}, {} ({} coefficients)\n", name, methodName(row),
                        row.coefficients);

@@ -1,13 +1,20 @@
 // Nanoseconds on one core: a fitted polynomial in every way it can be asked, beside the exact trace
 // of the same rays. Arguments: prescriptions.
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <stdlib.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <stdexcept>
 #include <vector>
 
+#include "lens/code_generation.h"
 #include "lens/fit_domain.h"
 #include "lens/polynomial.h"
 #include "lens/polynomial_lens.h"
@@ -146,6 +153,40 @@ void addLens(std::vector<Contestant>& contestants, const std::string& name, cons
                            }});
 }
 
+/// The C++ that codegen writes of a fit, compiled as its users would and loaded.
+class GeneratedLens {
+public:
+    GeneratedLens(const LensFit& fit, const Prescription& prescription) {
+        std::string folder = (std::filesystem::temp_directory_path() / "etendue-XXXXXX").string();
+        if (!::mkdtemp(folder.data())) throw std::runtime_error("cannot make " + folder);
+        std::ofstream(folder + "/lens.h")
+            << generateCode(fit, prescription, CodeLanguage::cPlusPlus, "lens");
+        std::ofstream(folder + "/lens.cpp")
+            << "#include \"lens.h\"\n"
+               "extern \"C\" double throughput(const double* q) {\n"
+               "    const double sensor[2] = {q[0], q[1]}, aperture[2] = {q[2], q[3]};\n"
+               "    const auto ray = etendue_lenses::Lens<double>::trace(sensor, aperture, q[4]);\n"
+               "    return ray ? ray->throughput : 0.0;\n}\n";
+        const std::string library = folder + "/lens.so";
+        const std::string compile = "c++ -std=c++17 -O3 -march=x86-64-v3 -shared -fPIC " + folder +
+                                    "/lens.cpp -o " + library;
+        void* const loaded =
+            std::system(compile.c_str()) == 0 ? ::dlopen(library.c_str(), RTLD_NOW) : nullptr;
+        std::filesystem::remove_all(folder);
+        if (!loaded) throw std::runtime_error("generated code: cannot be compiled or loaded");
+        throughput_ = reinterpret_cast<double (*)(const double*)>(::dlsym(loaded, "throughput"));
+    }
+
+    double throughput(const FitQuery& q) const {
+        const double numbers[] = {q.sensor.mm.x(), q.sensor.mm.y(), q.aperture.mm.x(),
+                                  q.aperture.mm.y(), q.wavelengthNm};
+        return throughput_(numbers);
+    }
+
+private:
+    double (*throughput_)(const double*) = nullptr;
+};
+
 /// How far float evaluation strays from double, rms in mrad of the pupil direction's components.
 double floatErrorMrad(const SparsePolynomial& exit, const Inputs& inputs) {
     const PolynomialEvaluator<double> inDouble(exit);
@@ -195,6 +236,11 @@ void measureLens(const std::string& file) {
         addBatch<double, 16>(contestants, name + " double", fit.exit, inputs);
         polynomialLens.emplace(prescription, fit, aperture);
         addLens(contestants, "polynomial 40", *polynomialLens, rays);
+        contestants.push_back({"generated C++ 40 trace", rays.size(),
+                               [&rays, generated = GeneratedLens(fit, prescription)] {
+                                   for (const Ray& ray : rays)
+                                       sink = generated.throughput(ray.query);
+                               }});
     }
     const SparsePolynomial published =
         fitLens(prescription, domain, settingsFor(PolynomialBasis::cartesian, 40)).exit;
@@ -215,5 +261,10 @@ void measureLens(const std::string& file) {
 }  // namespace etendue
 
 int main(int count, char** arguments) {
-    for (int i = 1; i < count; ++i) etendue::measureLens(arguments[i]);
+    try {
+        for (int i = 1; i < count; ++i) etendue::measureLens(arguments[i]);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "lens_bench: {}\n", error.what());
+        return 1;
+    }
 }

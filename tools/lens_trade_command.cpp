@@ -183,7 +183,7 @@ std::vector<LensTrade> measureAll(const LensTradeCommand& command) {
     TradeProgress progress(fits);
     std::vector<LensTrade> trades;
     for (std::size_t i = 0; i < prescriptions.size(); ++i) {
-        const std::string name = std::filesystem::path(command.lenses[i]).stem().string();
+        const std::string name = findLensFile(command.lenses[i]).stem().string();
         const FitDomain domain = fitDomain(prescriptions[i], requestOf(command.choice));
         for (const FitForm form : command.forms)
             for (const PolynomialBasis basis : basesFor(command, prescriptions[i]))

@@ -238,7 +238,7 @@ TEST_CASE("PolynomialEvaluator: float loses less than a tenth of a small fit's e
         const PolynomialInput input{query.sensor.mm, query.aperture.mm, query.wavelengthNm};
         const PolynomialValues<double> exact = inDouble.values(input);
         const PolynomialValues<float> rounded = inFloat.values(input);
-        for (std::size_t o : {2, 3})
+        for (const std::size_t o : {std::size_t{2}, std::size_t{3}})
             squares += std::pow(static_cast<double>(rounded[o]) - exact[o], 2.0);
     }
     const double lossMrad = 1e3 * std::sqrt(squares / count);

@@ -49,11 +49,11 @@ TEST_CASE("Command: an option that makes no sense is wrong usage, in one clear l
         {"--preview p.jpg", "written as png"},
         {"-o p.png", "-o"},
     };
-    for (const auto& [option, message] : cases) {
-        CAPTURE(option);
-        const Outcome outcome = run("render " + scene + " -o " + out + " " + option);
+    for (const auto& bad : cases) {
+        CAPTURE(bad.first);
+        const Outcome outcome = run("render " + scene + " -o " + out + " " + bad.first);
         CHECK(outcome.code == 64);
-        CHECK(contains(outcome.output, message));
+        CHECK(contains(outcome.output, bad.second));
         CHECK_FALSE(std::filesystem::exists(out));
     }
     CHECK(run("render " + scene + " -o " + (folder.path() / "o.png").string()).code == 64);

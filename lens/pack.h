@@ -67,12 +67,20 @@ public:
     }
 
 private:
+#ifdef __AVX512F__
+    static constexpr int registerBytes = 64;
+#else
     static constexpr int registerBytes = 32;
+#endif
     static constexpr int width = std::min<int>(N, registerBytes / sizeof(T));
     static constexpr int count = N / width;
     typedef T Register __attribute__((vector_size(width * sizeof(T))));
 
     [[gnu::always_inline]] static Register fused(Register a, Register b, Register c) {
+#ifdef __AVX512F__
+        if constexpr (std::is_same_v<T, double> && width == 8) return _mm512_fmadd_pd(a, b, c);
+        if constexpr (std::is_same_v<T, float> && width == 16) return _mm512_fmadd_ps(a, b, c);
+#endif
 #ifdef __FMA__  // as the loop below, which GCC 12 does not see through everywhere
         if constexpr (std::is_same_v<T, double> && width == 4) return _mm256_fmadd_pd(a, b, c);
         if constexpr (std::is_same_v<T, float> && width == 8) return _mm256_fmadd_ps(a, b, c);

@@ -6,8 +6,8 @@
 
 namespace etendue {
 
-/// By way of a temporary file beside it. Throws InputError when its folder does not exist,
-/// std::runtime_error when writing fails; both name the file.
+/// As writeFileAtomically (renderer/atomic_file.h). Throws InputError when its folder does not
+/// exist, std::system_error when writing fails; both name the file.
 void writeWholeFile(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace etendue

@@ -86,3 +86,13 @@ TEST_CASE("Lens command: a basis that does not suit the lens is refused") {
     CHECK(run("lens fit tessar-100mm --basis axil").code == 64);
     CHECK(run("lens fit tessar-100mm --wavelengths 700,400").code == 64);
 }
+
+TEST_CASE("Lens command: what is written goes through a link and never replaces it") {
+    const TemporaryFolder folder;
+    folder.write("target.svg", "old");
+    std::filesystem::create_symlink("target.svg", folder.path() / "link.svg");
+    const std::string link = (folder.path() / "link.svg").string();
+    CHECK(run("lens draw tessar-100mm -o " + link).code == 0);
+    CHECK(std::filesystem::is_symlink(link));
+    CHECK(contains(readFile(folder.path() / "target.svg"), "<svg"));
+}

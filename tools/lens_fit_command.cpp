@@ -161,7 +161,7 @@ ObtainedFit obtainFit(const Prescription& prescription, const LensChoice& choice
     FitBar bar;
     const auto notice = [&](const std::string& sentence) {
         isFromCache = false;
-        fmt::print(stderr, "{}\n", sentence);
+        say(fmt::format("{}\n", sentence));
     };
     LensFit fit =
         cachedFit(prescription, domain, settings, cache, notice,

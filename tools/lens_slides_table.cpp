@@ -7,6 +7,7 @@
 #include "lens/slides_table.h"
 #include "tools/json.h"
 #include "tools/lens_choice.h"
+#include "tools/progress.h"
 #include "tools/text_table.h"
 
 namespace etendue {
@@ -40,8 +41,7 @@ std::vector<SlidesEntry> measureAll() {
         const std::string name(slidesLenses[lens]);
         const SlidesMeasurement measurement(loadPrescription(findLensFile(name)));
         for (const SlidesRow& row : slidesRows()) {
-            fmt::print(stderr, "{}, {} ({} coefficients)\n", name, methodName(row),
-                       row.coefficients);
+            say(fmt::format("{}, {} ({} coefficients)\n", name, methodName(row), row.coefficients));
             entries.push_back({lens, row, measurement.measure(row)});
         }
     }

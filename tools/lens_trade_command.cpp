@@ -8,6 +8,7 @@
 #include "lens/fit_domain.h"
 #include "tools/json.h"
 #include "tools/lens_slides_table.h"
+#include "tools/progress.h"
 #include "tools/svg_plot.h"
 #include "tools/text_table.h"
 #include "tools/write_file.h"
@@ -140,15 +141,15 @@ public:
 
     void begin(const std::string& what) {
         what_ = fmt::format("{}/{} {}", ++number_, fits_, what);
-        if (!isTerminal_) fmt::print(stderr, "{}\n", what_);
+        if (!isTerminal_) say(fmt::format("{}\n", what_));
     }
     void update(double share, std::string_view stage) const {
         if (!isTerminal_) return;
-        fmt::print(stderr, "\r{}: {:.0f} %, {}\033[K", what_, 100.0 * share, stage);
+        say(fmt::format("\r{}: {:.0f} %, {}\033[K", what_, 100.0 * share, stage));
         std::fflush(stderr);
     }
     ~TradeProgress() {
-        if (isTerminal_) fmt::print(stderr, "\r\033[K");
+        if (isTerminal_) say("\r\033[K");
     }
 
 private:

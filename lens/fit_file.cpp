@@ -295,15 +295,19 @@ void writeSynced(const std::filesystem::path& file, const std::string& text) {
 
 }  // namespace
 
-void writeFitFile(const std::filesystem::path& file, const LensFit& fit) {
+std::string fitFileText(const LensFit& fit) {
     Json body = jsonOf(fit);
     const std::string checksum = hex(fnv1a(body.dump()));
     const Json json = {{"format", formatName}, {"checksum", checksum}, {"fit", std::move(body)}};
+    return json.dump() + "\n";
+}
+
+void writeFitFile(const std::filesystem::path& file, const LensFit& fit) {
     std::filesystem::path beside = file;
     beside += "." + std::to_string(::getpid()) + ".part";
     std::error_code failed;
     std::filesystem::remove(beside, failed);  // of a process of that number, long gone
-    writeSynced(beside, json.dump() + "\n");
+    writeSynced(beside, fitFileText(fit));
     std::filesystem::rename(beside, file, failed);
     if (failed) {
         std::filesystem::remove(beside, failed);

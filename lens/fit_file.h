@@ -10,7 +10,11 @@
 
 namespace etendue {
 
-/// Written beside `file` and renamed over it, so that no reader ever meets half a file. Throws
+/// What a fit file holds.
+std::string fitFileText(const LensFit& fit);
+
+/// Written beside `file` and renamed over it, so that no reader ever meets half a file, and
+/// whatever was there is replaced, a link too: for files of our own, such as the cache's. Throws
 /// std::runtime_error, naming the file, when that fails.
 void writeFitFile(const std::filesystem::path& file, const LensFit& fit);
 

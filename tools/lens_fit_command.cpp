@@ -8,6 +8,7 @@
 
 #include "lens/fit_cache.h"
 #include "tools/progress.h"
+#include "tools/write_file.h"
 
 namespace etendue {
 
@@ -176,7 +177,7 @@ ObtainedFit obtainFit(const Prescription& prescription, const LensChoice& choice
 ExitCode runLensFit(const LensFitCommand& command) {
     const Prescription prescription = loadPrescription(command.choice);
     const ObtainedFit obtained = obtainFit(prescription, command.choice, command.options);
-    if (!command.output.empty()) writeFitFile(command.output, obtained.fit);
+    if (!command.output.empty()) writeWholeFile(command.output, fitFileText(obtained.fit));
     if (command.asJson) {
         Json json = jsonOf(obtained.fit);
         json.add("lens", prescription.name);

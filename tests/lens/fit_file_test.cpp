@@ -64,6 +64,7 @@ TEST_CASE("Fit file: what is read has the bits that were written") {
     const TemporaryDirectory directory;
     const std::filesystem::path file = directory.path() / "fit.json";
     writeFitFile(file, someFit());
+    CHECK(textOf(file) == fitFileText(someFit()));
     const FitFileContent content =
         readFitFile(file, fitKey(doubleGauss(), doubleGaussDomain(), smallSettings()));
     CHECK(content.refusal.empty());

@@ -1,4 +1,6 @@
 // The commands about lenses as a user meets them.
+#include <sys/stat.h>
+
 #include "tests/lens/prescriptions.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/tools/command_outcome.h"
@@ -95,4 +97,24 @@ TEST_CASE("Lens command: what is written goes through a link and never replaces 
     CHECK(run("lens draw tessar-100mm -o " + link).code == 0);
     CHECK(std::filesystem::is_symlink(link));
     CHECK(contains(readFile(folder.path() / "target.svg"), "<svg"));
+}
+
+TEST_CASE("Lens command: a fit is written through links and into pipes, which stay what they are") {
+    const TemporaryFolder folder;
+    folder.write("target.json", "old");
+    std::filesystem::create_symlink("target.json", folder.path() / "link.json");
+    const std::string cache = "XDG_CACHE_HOME=" + folder.path().string();
+    const std::string fit = "lens fit tessar-100mm --terms 4 --degree 3 -o ";
+    const std::string linkedFit = (folder.path() / "link.json").string();
+    CHECK(run(fit + linkedFit, cache).code == 0);
+    CHECK(std::filesystem::is_symlink(linkedFit));
+    CHECK(readFile(folder.path() / "target.json").starts_with("{"));
+    const std::string pipe = (folder.path() / "pipe").string();
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    const std::string read = (folder.path() / "read.json").string();
+    CHECK(run(fit + pipe + " & timeout 20 cat " + pipe + " > " + read + "; wait $!", cache).code ==
+          0);
+    CHECK(std::filesystem::is_fifo(pipe));
+    CHECK(readFile(read) == readFile(folder.path() / "target.json"));
+    CHECK(run(fit + (folder.path() / "no/fit.json").string(), cache).code == 66);
 }

@@ -70,9 +70,12 @@ FitQuery drawQuery(const FitDomain& domain, std::uint64_t seed, std::uint64_t in
     FitQuery query;
     std::uint64_t dimension = 0;
     const auto next = [&] { return uniform(seed, index, dimension++); };
+    // The picture may be a speck on a huge sensor, which draws from all of it would hardly ever
+    // hit. Any rectangle that holds the part of the sensor within the picture would do.
+    const Eigen::Vector2d half = domain.sensorHalfSizeMm.cwiseMin(2.0 * domain.imageRadiusMm);
     do {
         const double x = 2.0 * next() - 1.0, y = 2.0 * next() - 1.0;
-        query.sensor.mm = domain.sensorHalfSizeMm.cwiseProduct(Eigen::Vector2d(x, y));
+        query.sensor.mm = half.cwiseProduct(Eigen::Vector2d(x, y));
     } while (query.sensor.mm.norm() > domain.imageRadiusMm);
     const double u = next(), v = next();
     query.aperture.mm = domain.apertureRadiusMm * sampleUnitDisc({u, v});

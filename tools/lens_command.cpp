@@ -1,4 +1,3 @@
-// With main.cpp the only file that knows CLI11.
 #include "tools/lens_command.h"
 
 #include <CLI/CLI.hpp>
@@ -12,6 +11,7 @@
 #include "tools/lens_info.h"
 #include "tools/lens_report.h"
 #include "tools/lens_trade_command.h"
+#include "tools/option_checks.h"
 
 namespace etendue {
 
@@ -41,15 +41,15 @@ void addLensSettings(CLI::App* subcommand, LensChoice& choice) {
     subcommand->add_option("--sensor", choice.sensorMm, "Its size in mm; default: 36,24")
         ->delimiter(',')
         ->expected(2)
-        ->check(CLI::PositiveNumber.description(""))
+        ->check(numberBetween(1e-3, 1e5))
         ->type_name("W,H");
     subcommand
         ->add_option("--focus", choice.focusMetres,
                      "From the sensor to what is sharp; default: infinity")
-        ->check(CLI::PositiveNumber.description(""))
+        ->check(positiveNumber())
         ->type_name("METRES");
     subcommand->add_option("--f-number", choice.fNumber, "Default: wide open")
-        ->check(CLI::PositiveNumber.description(""))
+        ->check(numberBetween(0.1, 1e4))
         ->type_name("N");
 }
 
@@ -87,7 +87,7 @@ void addDraw(CLI::App& lens, Chosen& chosen) {
         ->type_name("N");
     draw->add_option("--wavelengths", command->wavelengthsNm, "In nm; default: the d line")
         ->delimiter(',')
-        ->check(CLI::Range(shortestWavelengthNm, longestWavelengthNm).description(""))
+        ->check(numberBetween(shortestWavelengthNm, longestWavelengthNm))
         ->type_name("LIST");
     draw->add_flag("--by-wavelength", command->colourByWavelength,
                    "Colour rays by their wavelength, not by their field");
@@ -137,6 +137,7 @@ void addFitOptions(CLI::App* subcommand, FitOptions& options) {
                      "The shortest and the longest, in nm; default: 400,700")
         ->delimiter(',')
         ->expected(2)
+        ->check(numberBetween(shortestWavelengthNm, longestWavelengthNm))
         ->type_name("A,B");
 }
 

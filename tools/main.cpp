@@ -1,8 +1,7 @@
-// The command line. CLI11 is known to this file and to lens_command.cpp alone.
+// The command line. CLI11 is known to this file, lens_command.cpp and option_checks.h alone.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -11,6 +10,7 @@
 #include <stdexcept>
 
 #include "tools/lens_command.h"
+#include "tools/option_checks.h"
 #include "tools/render_command.h"
 #include "tools/version.h"
 
@@ -38,22 +38,6 @@ std::string joinArguments(int argc, char** argv) {
     return line;
 }
 
-/// Accepts what the C++ library reads as a `T` from first to last character, and `isGood` likes.
-template <class T>
-CLI::Validator numberThat(bool (*isGood)(T), const std::string& expected) {
-    return CLI::Validator(
-        [=](const std::string& text) {
-            T value{};
-            const char* end = text.data() + text.size();
-            const auto [rest, error] = std::from_chars(text.data(), end, value);
-            const bool isNumber = error == std::errc() && rest == end;
-            return isNumber && isGood(value)
-                       ? std::string()
-                       : fmt::format("expected {}, got \"{}\"", expected, text);
-        },
-        "");
-}
-
 void addOverrides(CLI::App* command, std::vector<std::string>& overrides) {
     command->add_option("-s,--set", overrides, "Override any key of the scene; may be repeated")
         ->allow_extra_args(false)
@@ -69,8 +53,7 @@ void addRender(CLI::App& app, RenderCommand& c) {
         ->type_name("FILE");
     render->add_option("--preview", c.preview, "Also write an sRGB PNG")->type_name("FILE");
     render->add_option("--exposure", c.previewExposureStops, "Added to the PNG, not to the EXR")
-        ->check(numberThat<double>([](double v) { return v >= -100.0 && v <= 100.0; },
-                                   "a number from -100 to 100"))
+        ->check(numberBetween(-100.0, 100.0))
         ->type_name("STOPS");
     render->add_option("--samples", c.samples, "Per pixel; default: the scene's estimator.samples")
         ->check(CLI::Range(1, 1 << 30).description(""))
@@ -78,7 +61,7 @@ void addRender(CLI::App& app, RenderCommand& c) {
     render
         ->add_option("--time", c.timeLimitSeconds,
                      "Stop after about so long; without --samples, whatever the scene says")
-        ->check(numberThat<double>([](double v) { return v > 0.0; }, "a number above 0"))
+        ->check(positiveNumber())
         ->type_name("SECONDS");
     render->add_option("--seed", c.seed, "Of the random numbers; default 0")
         ->check(numberThat<std::uint64_t>([](std::uint64_t) { return true; },

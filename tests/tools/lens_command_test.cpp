@@ -46,6 +46,30 @@ TEST_CASE(
     CHECK(contains(missing.output, "tessar-100mm"));
 }
 
+TEST_CASE("Lens command: a setting that is no number, or beyond all lenses, is wrong usage") {
+    const std::vector<std::pair<const char*, const char*>> cases{
+        {"--sensor nan,nan", "expected a number from 0.001 to 100000"},
+        {"--sensor 1e9,1", "expected a number from 0.001 to 100000"},
+        {"--sensor 36,0", "expected a number from 0.001 to 100000"},
+        {"--sensor 36", "--sensor"},
+        {"--f-number nan", "expected a number from 0.1 to 10000"},
+        {"--f-number 0.05", "expected a number from 0.1 to 10000"},
+        {"--f-number 2e4", "expected a number from 0.1 to 10000"},
+        {"--focus nan", "expected a number above 0"},
+        {"--focus 0", "expected a number above 0"},
+        {"--focus -1", "expected a number above 0"},
+        {"--focus 2m", "expected a number above 0"}};
+    for (const auto& bad : cases) {
+        CAPTURE(bad.first);
+        const Outcome outcome = run("lens info tessar-100mm " + std::string(bad.first));
+        CHECK(outcome.code == 64);
+        CHECK(contains(outcome.output, bad.second));
+    }
+    CHECK(run("lens info tessar-100mm --focus inf --sensor 1e5,1e-3 --f-number 1e4").code == 0);
+    CHECK(run("lens draw tessar-100mm -o /dev/null --wavelengths nan").code == 64);
+    CHECK(run("lens fit tessar-100mm --wavelengths nan,nan").code == 64);
+}
+
 TEST_CASE("Lens command: draw writes a whole picture with every field") {
     const TemporaryFolder folder;
     const std::string svg = (folder.path() / "lens.svg").string();

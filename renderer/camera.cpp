@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 namespace etendue {
@@ -88,13 +89,44 @@ std::optional<CameraRay> Camera::sampleRay(Vec2 film, Vec2 apertureUniform,
                                            const Wavelengths& wavelengths) const {
     const SensorPoint sensor{(toEigen(film) - filmCenter(settings_)) * pixelMm_};  // (3)
     const AperturePoint aperture = lens_->sampleAperture(toEigen(apertureUniform));
-    return worldRay(lens_->trace(sensor, aperture, wavelengths.heroNm()));
+    const std::optional<ExitRay> exit = lens_->trace(sensor, aperture, wavelengths.heroNm());
+    if (!exit) return {};
+    return worldRay(*exit);
 }
 
 std::optional<CameraConnection> Camera::connect(Vec3 scenePoint, Vec2 apertureUniform,
                                                 const Wavelengths& wavelengths) const {
     const Vec3d target = lensFromWorld_.point(toDouble(scenePoint)) / metresPerMm;
     const Eigen::Vector3d targetMm(target.x, target.y, target.z);
+    const std::optional<Seen> seen = see(targetMm, apertureUniform, wavelengths);
+    if (!seen) return {};
+    const CameraConnection connection{
+        .film = seen->film,
+        .ray = worldRay(seen->exit),
+        .distance = static_cast<float>((targetMm - seen->exit.origin).norm() * metresPerMm)};
+    if (!std::isfinite(connection.distance) ||
+        footprintArea(connection.ray, connection.distance) == 0.0)
+        return {};
+    return connection;
+}
+
+std::optional<CameraConnection> Camera::connectToInfinity(Vec3 direction, Vec2 apertureUniform,
+                                                          const Wavelengths& wavelengths) const {
+    // So far away that a lens's size is an angle below a float's rounding.
+    constexpr double farMm = 1e12;
+    const Vec3d target = lensFromWorld_.vector(toDouble(direction)) * farMm;
+    const std::optional<Seen> seen =
+        see({target.x, target.y, target.z}, apertureUniform, wavelengths);
+    if (!seen) return {};
+    const CameraConnection connection{.film = seen->film,
+                                      .ray = worldRay(seen->exit),
+                                      .distance = std::numeric_limits<float>::infinity()};
+    if (std::isinf(pdfSolidAngle(connection.ray))) return {};
+    return connection;
+}
+
+std::optional<Camera::Seen> Camera::see(const Eigen::Vector3d& targetMm, Vec2 apertureUniform,
+                                        const Wavelengths& wavelengths) const {
     const AperturePoint aperture = lens_->sampleAperture(toEigen(apertureUniform));
     const std::optional<SensorPoint> sensor =
         lens_->connect(targetMm, aperture, wavelengths.heroNm());
@@ -103,32 +135,25 @@ std::optional<CameraConnection> Camera::connect(Vec3 scenePoint, Vec2 apertureUn
     // footprint.
     const std::optional<ExitRay> exit = lens_->trace(*sensor, aperture, wavelengths.heroNm());
     if (!exit) return {};
-
     const Eigen::Vector2d film = sensor->mm / pixelMm_ + filmCenter(settings_);  // (3)
-    CameraConnection connection;
-    connection.film = {static_cast<float>(film.x()), static_cast<float>(film.y())};
-    connection.ray = *worldRay(exit);
-    connection.distance = static_cast<float>((targetMm - exit->origin).norm() * metresPerMm);
-    const bool isBeyondFloat =
-        !isFinite(Vec3{connection.film.x, connection.film.y, connection.distance});
-    if (isBeyondFloat || footprintArea(connection.ray, connection.distance) == 0.0) return {};
-    return connection;
+    const Seen seen{{static_cast<float>(film.x()), static_cast<float>(film.y())}, *exit};
+    if (!std::isfinite(seen.film.x) || !std::isfinite(seen.film.y)) return {};
+    return seen;
 }
 
-std::optional<CameraRay> Camera::worldRay(const std::optional<ExitRay>& exit) const {
-    if (!exit) return {};
+CameraRay Camera::worldRay(const ExitRay& exit) const {
     const Transform& world = settings_.worldFromLens;
     const auto byPixel = [&](const Eigen::Vector3d& bySensor, double unit) {
         return toFloat(world.vector(fromEigen(bySensor) * (pixelMm_ * unit)));
     };
     return CameraRay{
-        .origin = toFloat(world.point(fromEigen(exit->origin) * metresPerMm)),
-        .direction = toFloat(world.vector(fromEigen(exit->direction))),
-        .weight = static_cast<float>(exit->throughput * weightScale_),  // (4)
-        .originByPixel = {byPixel(exit->originBySensor.col(0), metresPerMm),
-                          byPixel(exit->originBySensor.col(1), metresPerMm)},
-        .directionByPixel = {byPixel(exit->directionBySensor.col(0), 1.0),
-                             byPixel(exit->directionBySensor.col(1), 1.0)},
+        .origin = toFloat(world.point(fromEigen(exit.origin) * metresPerMm)),
+        .direction = toFloat(world.vector(fromEigen(exit.direction))),
+        .weight = static_cast<float>(exit.throughput * weightScale_),  // (4)
+        .originByPixel = {byPixel(exit.originBySensor.col(0), metresPerMm),
+                          byPixel(exit.originBySensor.col(1), metresPerMm)},
+        .directionByPixel = {byPixel(exit.directionBySensor.col(0), 1.0),
+                             byPixel(exit.directionBySensor.col(1), 1.0)},
     };
 }
 

@@ -58,12 +58,23 @@ public:
     std::optional<CameraConnection> connect(Vec3 scenePoint, Vec2 apertureUniform,
                                             const Wavelengths& wavelengths) const;
 
+    /// The same for a point at infinity in the unit `direction`; the connection's distance is
+    /// infinite, its importance ray.weight · pdfSolidAngle(ray).
+    std::optional<CameraConnection> connectToInfinity(Vec3 direction, Vec2 apertureUniform,
+                                                      const Wavelengths& wavelengths) const;
+
     const CameraSettings& settings() const { return settings_; }
     Vec3 position() const;  // of the lens origin, world
     Vec3 forward() const;
 
 private:
-    std::optional<CameraRay> worldRay(const std::optional<ExitRay>& exit) const;
+    struct Seen {
+        Vec2 film;
+        ExitRay exit;
+    };
+    std::optional<Seen> see(const Eigen::Vector3d& targetMm, Vec2 apertureUniform,
+                            const Wavelengths& wavelengths) const;
+    CameraRay worldRay(const ExitRay& exit) const;
 
     std::shared_ptr<const LensModel> lens_;
     CameraSettings settings_;

@@ -13,9 +13,39 @@ struct Kind {
 
 constexpr Kind kinds[] = {
     {"pt", makePathTracer},
+    {"lt", makeLightTracer},
+    {"bdpt", makeBidirectional},
 };
 
 }  // namespace
+
+std::uint32_t pixelIndex(const View& view, SampleId id) {
+    return static_cast<std::uint32_t>(id.y) *
+               static_cast<std::uint32_t>(view.camera.settings().width) +
+           static_cast<std::uint32_t>(id.x);
+}
+
+CameraSample drawCameraSample(const View& view, SampleId id) {
+    CameraSample result{.random = RandomStream(id.seed, pixelIndex(view, id), id.sample),
+                        .wavelengths = {},
+                        .film = {},
+                        .apertureUniform = {},
+                        .ray = {}};
+    const Vec2 center{static_cast<float>(id.x) + 0.5f, static_cast<float>(id.y) + 0.5f};
+    result.film = center + view.filter.sample(result.random.next2());
+    result.apertureUniform = result.random.next2();
+    result.ray = view.camera.sampleRay(result.film, result.apertureUniform, result.wavelengths);
+    return result;
+}
+
+std::optional<FirstHit> firstHitOf(const Scene& scene, const CameraRay& ray,
+                                   const Wavelengths& wavelengths) {
+    const std::optional<SurfacePoint> point = scene.closestHit({ray.origin, ray.direction});
+    if (!point) return {};
+    const BsdfContext context{point->uv, Transport::radiance, wavelengths};
+    return FirstHit{*point, point->material->bsdf->albedo(context),
+                    length(point->position - ray.origin)};
+}
 
 const std::vector<std::string>& estimatorKinds() {
     static const std::vector<std::string> names = [] {

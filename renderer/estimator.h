@@ -1,12 +1,15 @@
-// Estimator: an unbiased estimate of the measurement of equation (1), one camera sample at a time.
+// Estimator: an unbiased estimate of the measurement of equation (1), one sample at a time.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "renderer/camera.h"
+#include "renderer/filter.h"
+#include "renderer/mis.h"
 #include "renderer/random.h"
 #include "renderer/scene.h"
 #include "renderer/spectrum.h"
@@ -19,6 +22,23 @@ struct EstimatorSettings {
     std::string kind = "pt";
     int maxDepth = 12;
     int russianRouletteDepth = 5;  // from this depth on a path may be ended at random; 0: never
+    TechniqueSet techniques;       // of bdpt
+    int lightPaths = 1;            // of lt and bdpt: traced for each camera sample
+};
+
+/// What the samples are taken of.
+struct View {
+    const Scene& scene;
+    const Camera& camera;
+    const Filter& filter;
+};
+
+/// Names a sample, whose numbers can be had again from it. Light paths belong to the sample of a
+/// pixel, too, wherever they may end.
+struct SampleId {
+    std::uint64_t seed = 0;
+    int x = 0, y = 0;  // pixel of the full frame
+    std::uint32_t sample = 0;
 };
 
 /// What the camera ray met first, for the auxiliary images.
@@ -28,24 +48,74 @@ struct FirstHit {
     float distance;
 };
 
+/// The part of a sample that one technique found.
+struct Contribution {
+    Technique technique;  // s = t = 0 for path tracing, which has none
+    Spectrum value;       // pixel value, not weighted yet
+    float weight = 1.0f;  // of multiple importance sampling
+    Vec2 film;            // of a splat: pixels of the full frame
+    bool isSplat = false;
+};
+
+struct SampleRequest {
+    bool ownPixel = true;  // the camera sample of the pixel itself; else only what may fall on
+                           // others
+    bool firstHit = false;
+};
+
+struct Sample {
+    std::vector<Contribution> contributions;
+    std::optional<FirstHit> firstHit;  // if requested, and anything was met
+};
+
 class Estimator {
 public:
     virtual ~Estimator() = default;
 
-    /// The radiance along a camera ray. `firstHit`, if wanted, receives what the ray met.
-    virtual Spectrum radiance(const Scene& scene, const CameraRay& ray,
-                              const Wavelengths& wavelengths, RandomStream& random,
-                              std::optional<FirstHit>* firstHit) const = 0;
+    /// Sets `result`, whose memory is used again.
+    virtual void takeSample(const View& view, SampleId id, SampleRequest request,
+                            Sample& result) const = 0;
+
+    /// Light paths that each sample traces; a pixel's value is the mean of its own contributions
+    /// over the samples, plus the mean of what is splatted on it over all light paths. 0: none, and
+    /// nothing is splatted.
+    virtual int lightPathsPerSample() const { return 0; }
 };
+
+/// The film point by the filter and the lens point uniform on the aperture, alike for every
+/// estimator. No ray where the lens blocks it.
+struct CameraSample {
+    RandomStream random;  // the rest of its numbers
+    Wavelengths wavelengths;
+    Vec2 film, apertureUniform;
+    std::optional<CameraRay> ray;
+};
+CameraSample drawCameraSample(const View& view, SampleId id);
+
+/// What `ray` meets first.
+std::optional<FirstHit> firstHitOf(const Scene& scene, const CameraRay& ray,
+                                   const Wavelengths& wavelengths);
+
+/// The number of random stream that belongs to a pixel.
+std::uint32_t pixelIndex(const View& view, SampleId id);
 
 /// The kinds that makeEstimator knows.
 const std::vector<std::string>& estimatorKinds();
 
-/// Throws std::invalid_argument for an unknown kind.
+/// `camera`: whose pixels are to be counted. Throws std::invalid_argument for an unknown kind.
 std::unique_ptr<Estimator> makeEstimator(const EstimatorSettings& settings);
 
 /// Path tracing with next-event estimation, the two combined by the balance heuristic (Veach 1997,
 /// §9).
 std::unique_ptr<Estimator> makePathTracer(const EstimatorSettings& settings);
+/// The radiance that path tracing sees along a ray.
+Spectrum pathTracedRadiance(const Scene& scene, const Ray& ray, const Wavelengths& wavelengths,
+                            const EstimatorSettings& settings, RandomStream& random);
+
+/// Light paths connected to the lens at every vertex: the techniques with t = 1 alone.
+std::unique_ptr<Estimator> makeLightTracer(const EstimatorSettings& settings);
+/// All techniques of bidirectional path tracing, or those that the settings name (Veach 1997,
+/// chapter 10).
+std::unique_ptr<Estimator> makeBidirectional(const EstimatorSettings& settings);
 
 }  // namespace etendue

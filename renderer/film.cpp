@@ -42,6 +42,8 @@ double varianceOfMean(double sum, double sumOfSquares, double n) {
 
 }  // namespace
 
+bool isUsable(const Spectrum& value) { return isUsable(firstLanes(value)); }
+
 Film::Slots Film::slotsFor(const FilmLayers& layers) {
     Slots slots;
     const auto take = [&](bool wanted, int count) {
@@ -71,13 +73,23 @@ Film::Film(const FrameWindow& window, const FilmLayers& layers)
                        static_cast<std::size_t>(slots_.count));
 }
 
-double* Film::pixelSums(int x, int y) {
+std::size_t Film::pixelNumber(int x, int y) const {
     assert(x >= window_.x && x - window_.x < window_.width);
     assert(y >= window_.y && y - window_.y < window_.height);
-    const auto pixel =
-        static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
-        static_cast<std::size_t>(x - window_.x);
-    return state_.sums.data() + pixel * static_cast<std::size_t>(slots_.count);
+    return static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
+           static_cast<std::size_t>(x - window_.x);
+}
+
+double* Film::pixelSums(int x, int y) {
+    return state_.sums.data() + pixelNumber(x, y) * static_cast<std::size_t>(slots_.count);
+}
+
+void Film::expectSplats() {
+    state_.splatSums.resize(3 * state_.sums.size() / static_cast<std::size_t>(slots_.count));
+}
+
+void Film::addSplat(int x, int y, const Spectrum& value) {
+    addTo(state_.splatSums.data() + 3 * pixelNumber(x, y), firstLanes(value));
 }
 
 bool Film::countBad() {
@@ -115,7 +127,11 @@ void Film::merge(const Film& other) {
         throw std::invalid_argument("film: merged renders must share window and layers");
     std::transform(state_.sums.begin(), state_.sums.end(), other.state_.sums.begin(),
                    state_.sums.begin(), std::plus<>());
+    if (!other.state_.splatSums.empty()) expectSplats();
+    std::transform(other.state_.splatSums.begin(), other.state_.splatSums.end(),
+                   state_.splatSums.begin(), state_.splatSums.begin(), std::plus<>());
     state_.samples += other.state_.samples;
+    state_.lightPaths += other.state_.lightPaths;
     state_.badSamples += other.state_.badSamples;
 }
 
@@ -146,7 +162,13 @@ std::vector<ExrChannels> Film::channels() const {
         return [=](const double* sums, int i) { return mean(sums[slot + i], sums[hits]); };
     };
 
-    addImage({"R", "G", "B"}, overSamples(0));
+    const auto lightPaths = static_cast<double>(state_.lightPaths);
+    addImage({"R", "G", "B"}, [&](const double* sums, int i) {
+        const double own = mean(sums[i], n);
+        if (state_.splatSums.empty()) return own;
+        const auto pixel = static_cast<std::size_t>(sums - state_.sums.data()) / stride;
+        return own + mean(state_.splatSums[3 * pixel + static_cast<std::size_t>(i)], lightPaths);
+    });
     if (layers_.variance)
         addImage({"variance.R", "variance.G", "variance.B"}, [&](const double* sums, int i) {
             return varianceOfMean(sums[i], sums[slots_.squares + i], n);

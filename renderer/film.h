@@ -34,10 +34,15 @@ struct FilmFeatures {
 
 /// All that a film remembers; write it down and a render can go on elsewhere.
 struct FilmState {
-    std::vector<double> sums;  // pixel after pixel of the window, row by row
+    std::vector<double> sums;       // pixel after pixel of the window, row by row
+    std::vector<double> splatSums;  // three a pixel; empty when nothing is splatted
     std::uint64_t samples = 0;
+    std::uint64_t lightPaths = 0;  // of the whole frame, not of the window alone
     std::uint64_t badSamples = 0;
 };
+
+/// Whether a film would take the value: finite, and not negative.
+bool isUsable(const Spectrum& value);
 
 /// Pixels are addressed in the full frame; film point (x + 0.5, y + 0.5) is the centre of pixel
 /// (x, y). The functions that add to a pixel may run at the same time for different pixels.
@@ -52,6 +57,13 @@ public:
     /// What that sample met; not called for one that met nothing. As for add(), a value that is not
     /// finite is counted and left out.
     bool addFeatures(int x, int y, const FilmFeatures& features);
+    /// From now on light is splatted. To be called before addSplat.
+    void expectSplats();
+    /// Adds light that a light path brought to pixel (x, y) of the window: the film holds the mean
+    /// over all light paths. The value must be finite and not negative (isUsable).
+    void addSplat(int x, int y, const Spectrum& value);
+    void addLightPaths(std::uint64_t count) { state_.lightPaths += count; }
+    bool countBad();
     /// Every pixel of the window has had `count` more samples: the means' divisor.
     void addSamples(std::uint64_t count) { state_.samples += count; }
 
@@ -82,8 +94,8 @@ private:
     };
     static Slots slotsFor(const FilmLayers& layers);
 
+    std::size_t pixelNumber(int x, int y) const;
     double* pixelSums(int x, int y);
-    bool countBad();
 
     FrameWindow window_;
     FilmLayers layers_;

@@ -2,6 +2,7 @@
 // purpose: it is what they are compared with.
 #include "renderer/estimator.h"
 #include "renderer/scattering.h"
+#include "renderer/visibility.h"
 
 namespace etendue {
 
@@ -10,51 +11,47 @@ namespace {
 /// Balance heuristic for one sample of each strategy (Veach 1997, equation 9.8).
 float balanceWeight(float pdf, float otherPdf) { return pdf / (pdf + otherPdf); }
 
-class PathTracer final : public Estimator {
+/// The walk of one path.
+class PathWalk {
 public:
-    explicit PathTracer(const EstimatorSettings& settings) : settings_(settings) {}
+    PathWalk(const Scene& scene, const Wavelengths& wavelengths, const EstimatorSettings& settings,
+             RandomStream& random)
+        : scene_(scene), wavelengths_(wavelengths), settings_(settings), random_(random) {}
 
-    Spectrum radiance(const Scene& scene, const CameraRay& cameraRay,
-                      const Wavelengths& wavelengths, RandomStream& random,
-                      std::optional<FirstHit>* firstHit) const override {
+    Spectrum radiance(Ray ray) {
         Spectrum result, throughput(1.0f);
-        Ray ray{cameraRay.origin, cameraRay.direction};
         // The density with which the last scattering drew the ray; none after the camera or a Dirac
         // lobe, where no light sample competes.
         std::optional<float> pdfSolidAngle;
         for (int depth = 1;; ++depth) {
-            const std::optional<SurfacePoint> point = scene.closestHit(ray);
+            const std::optional<SurfacePoint> point = scene_.closestHit(ray);
             if (!point) {
-                result += throughput * environment(scene, ray, pdfSolidAngle);
+                result += throughput * environment(ray, pdfSolidAngle);
                 return result;
             }
-            const BsdfContext context{point->uv, Transport::radiance, wavelengths};
-            if (depth == 1 && firstHit)
-                *firstHit = {*point, point->material->bsdf->albedo(context),
-                             length(point->position - ray.origin)};
-            if (point->light >= 0)
-                result += throughput * emission(scene, *point, ray, pdfSolidAngle);
+            const BsdfContext context{point->uv, Transport::radiance, wavelengths_};
+            if (point->light >= 0) result += throughput * emission(*point, ray, pdfSolidAngle);
             if (depth == settings_.maxDepth) return result;
 
             const Vec3 wo = -ray.direction;
             if (!point->material->bsdf->isDirac())
-                result += throughput * nextEvent(scene, *point, context, wo, random);
+                result += throughput * nextEvent(*point, context, wo);
 
-            const float uLobe = random.next();
+            const float uLobe = random_.next();
             const std::optional<BsdfSample> next =
-                sampleScattering(*point, context, wo, uLobe, random.next2());
+                sampleScattering(*point, context, wo, uLobe, random_.next2());
             if (!next) return result;
             throughput *= next->weight;
-            if (!survivesRoulette(throughput, depth, random)) return result;
+            if (!survivesRoulette(throughput, depth)) return result;
             pdfSolidAngle = next->isDirac ? std::nullopt : std::optional(next->pdfSolidAngle);
             ray = {offsetOrigin(*point, next->wi), next->wi};
         }
     }
 
 private:
-    Spectrum emission(const Scene& scene, const SurfacePoint& point, const Ray& ray,
+    Spectrum emission(const SurfacePoint& point, const Ray& ray,
                       std::optional<float> pdfSolidAngle) const {
-        const LightTable& lights = scene.lights();
+        const LightTable& lights = scene_.lights();
         const EmitterHit hit{ray.direction, length(point.position - ray.origin),
                              point.geometricNormal};
         const Light& light = lights[point.light];
@@ -64,10 +61,9 @@ private:
         return radiance * balanceWeight(*pdfSolidAngle, lightPdf);
     }
 
-    Spectrum environment(const Scene& scene, const Ray& ray,
-                         std::optional<float> pdfSolidAngle) const {
+    Spectrum environment(const Ray& ray, std::optional<float> pdfSolidAngle) const {
         Spectrum sum;
-        const LightTable& lights = scene.lights();
+        const LightTable& lights = scene_.lights();
         const EmitterHit hit{ray.direction, std::numeric_limits<float>::infinity(), -ray.direction};
         for (const int index : lights.infiniteLights()) {
             const Spectrum radiance = lights[index].radiance(hit);
@@ -83,46 +79,66 @@ private:
 
     /// Always draws the same count of random numbers, so that a path's later choices do not depend
     /// on whether a light was visible.
-    Spectrum nextEvent(const Scene& scene, const SurfacePoint& point, const BsdfContext& context,
-                       Vec3 wo, RandomStream& random) const {
-        const float uLight = random.next();
-        const Vec2 u = random.next2();
-        const auto choice = scene.lights().sample(uLight);
+    Spectrum nextEvent(const SurfacePoint& point, const BsdfContext& context, Vec3 wo) {
+        const float uLight = random_.next();
+        const Vec2 u = random_.next2();
+        const auto choice = scene_.lights().sample(uLight);
         if (!choice) return {};
-        const auto sample = scene.lights()[choice->index].sample(point.position, u);
+        const auto sample = scene_.lights()[choice->index].sample(point.position, u);
         if (!sample) return {};
         const Scattering scattering = scatteringBetween(point, context, wo, sample->direction);
-        if (isBlack(scattering.value) || !isVisible(scene, point, *sample)) return {};
+        if (isBlack(scattering.value) || !isVisible(scene_, point, *sample)) return {};
         const float lightPdf = choice->probability * sample->pdfSolidAngle;
         const float weight =
             sample->isDirac ? 1.0f : balanceWeight(lightPdf, scattering.pdfSolidAngle);
         return scattering.value * sample->radiance * (weight / lightPdf);
     }
 
-    static bool isVisible(const Scene& scene, const SurfacePoint& point,
-                          const LightSample& sample) {
-        const Vec3 from = offsetOrigin(point, sample.direction);
-        if (std::isinf(sample.distance)) return scene.isVisibleToInfinity(from, sample.direction);
-        SurfacePoint end;
-        end.position = sample.position;
-        end.positionError = sample.positionError;
-        end.geometricNormal = sample.normal;
-        return scene.isVisible(from, offsetOrigin(end, -sample.direction));
-    }
-
-    bool survivesRoulette(Spectrum& throughput, int depth, RandomStream& random) const {
+    bool survivesRoulette(Spectrum& throughput, int depth) {
         if (settings_.russianRouletteDepth == 0 || depth < settings_.russianRouletteDepth)
             return true;
         const float survival = std::min(1.0f, maxLane(throughput));
-        if (!(random.next() < survival)) return false;
+        if (!(random_.next() < survival)) return false;
         throughput /= survival;
         return true;
     }
 
+    const Scene& scene_;
+    const Wavelengths& wavelengths_;
+    const EstimatorSettings& settings_;
+    RandomStream& random_;
+};
+
+class PathTracer final : public Estimator {
+public:
+    explicit PathTracer(const EstimatorSettings& settings) : settings_(settings) {}
+
+    void takeSample(const View& view, SampleId id, SampleRequest request,
+                    Sample& result) const override {
+        result.contributions.clear();
+        result.firstHit.reset();
+        if (!request.ownPixel) return;
+        CameraSample camera = drawCameraSample(view, id);
+        if (!camera.ray) return;
+        if (request.firstHit)
+            result.firstHit = firstHitOf(view.scene, *camera.ray, camera.wavelengths);
+        const Spectrum radiance =
+            pathTracedRadiance(view.scene, {camera.ray->origin, camera.ray->direction},
+                               camera.wavelengths, settings_, camera.random);
+        result.contributions.push_back(
+            {.technique = {}, .value = radiance * camera.ray->weight, .film = camera.film});
+    }
+
+private:
     EstimatorSettings settings_;
 };
 
 }  // namespace
+
+Spectrum pathTracedRadiance(const Scene& scene, const Ray& ray, const Wavelengths& wavelengths,
+                            const EstimatorSettings& settings, RandomStream& random) {
+    return PathWalk(scene, wavelengths, settings, random).radiance(ray);
+}
 
 std::unique_ptr<Estimator> makePathTracer(const EstimatorSettings& settings) {
     return std::make_unique<PathTracer>(settings);

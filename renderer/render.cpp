@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "renderer/parallel.h"
+#include "renderer/splats.h"
 
 namespace etendue {
 
@@ -14,6 +15,9 @@ constexpr int tileSize = 16;
 constexpr std::size_t badSamplesKept = 16;
 /// Long enough to keep all threads busy to the end of a pass, short enough to stop when asked.
 constexpr double secondsPerPass = 0.5;
+/// Of splats in memory at a time: some ten million.
+constexpr std::size_t tilesPerPart = 4096;
+constexpr std::uint64_t samplesPerSplattingPass = std::uint64_t{tilesPerPart} * tileSize * tileSize;
 
 struct Tile {
     int x, y, width, height;  // pixels of the full frame
@@ -28,45 +32,55 @@ std::vector<Tile> tilesOf(const FrameWindow& window) {
     return tiles;
 }
 
+/// Light paths may fall anywhere, so those of the whole frame are traced for a window of it: a crop
+/// is that part of the full picture, to the bit.
+std::vector<Tile> tilesFor(const FrameWindow& window, bool isSplatting) {
+    if (!isSplatting) return tilesOf(window);
+    return tilesOf(
+        {window.fullWidth, window.fullHeight, 0, 0, window.fullWidth, window.fullHeight});
+}
+
+bool contains(const FrameWindow& window, int x, int y) {
+    return x >= window.x && x - window.x < window.width && y >= window.y &&
+           y - window.y < window.height;
+}
+
 /// Everything a thread needs to take samples.
 struct Sampler {
-    const Scene& scene;
-    const Camera& camera;
+    const View& view;
     const Estimator& estimator;
-    const Filter& filter;
     Film& film;
+    TechniqueImages* images;
     std::uint64_t seed;
 
     std::mutex badMutex{};
     std::vector<BadSample> bad{};
 
-    /// One camera sample: film point by the filter, lens point uniform on the aperture. The weight
-    /// of equation (1) times the radiance is the pixel value; a blocked ray is a sample of value
-    /// zero.
-    void takeSample(int x, int y, std::uint32_t sample) {
-        const auto pixel =
-            static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(film.window().fullWidth) +
-            static_cast<std::uint32_t>(x);
-        RandomStream random(seed, pixel, sample);
-        const Vec2 center{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
-        const Vec2 filmPoint = center + filter.sample(random.next2());
-        const Wavelengths wavelengths;
-        const auto ray = camera.sampleRay(filmPoint, random.next2(), wavelengths);
-        if (!ray) return;
-        const Spectrum radiance =
-            film.wantsFeatures() ? radianceAndFeatures(x, y, *ray, wavelengths, random)
-                                 : estimator.radiance(scene, *ray, wavelengths, random, nullptr);
-        if (!film.add(x, y, radiance * ray->weight)) rememberBad({x, y, sample});
-    }
-
-    Spectrum radianceAndFeatures(int x, int y, const CameraRay& ray, const Wavelengths& wavelengths,
-                                 RandomStream& random) {
-        std::optional<FirstHit> hit;
-        const Spectrum radiance = estimator.radiance(scene, ray, wavelengths, random, &hit);
-        if (hit)
+    /// Adds what the sample brings to its own pixel, if that belongs to the film, and records what
+    /// it splats.
+    void takeSample(int x, int y, std::uint32_t index, Sample& sample, SplatList& splats) {
+        const bool isOwn = contains(film.window(), x, y);
+        estimator.takeSample(view, {seed, x, y, index},
+                             {.ownPixel = isOwn, .firstHit = isOwn && film.wantsFeatures()},
+                             sample);
+        Spectrum sum;
+        for (const Contribution& c : sample.contributions) {
+            if (!isUsable(c.value * c.weight)) {
+                rememberBad({x, y, index, c.technique});
+                continue;
+            }
+            if (c.isSplat) {
+                splats.add(index, c);
+                continue;
+            }
+            sum += c.value * c.weight;
+            if (images) images->add(x, y, c.technique, c.value, c.weight);
+        }
+        if (!isOwn) return;
+        if (!film.add(x, y, sum)) rememberBad({x, y, index, {}});
+        if (const auto& hit = sample.firstHit)
             film.addFeatures(
                 x, y, {hit->albedo, hit->point.shading.z, hit->point.position, hit->distance});
-        return radiance;
     }
 
     void rememberBad(BadSample b) {
@@ -75,10 +89,30 @@ struct Sampler {
     }
 };
 
+/// A pass over the frame, in parts few enough that their splats fit in memory. Splats are added
+/// sample by sample, in the order of the tiles: the same bits, whatever the pass and the thread.
+void takePass(Sampler& sampler, const std::vector<Tile>& tiles, std::uint32_t first,
+              std::uint32_t count, int threads) {
+    for (std::size_t begin = 0; begin < tiles.size(); begin += tilesPerPart) {
+        const std::size_t size = std::min(tilesPerPart, tiles.size() - begin);
+        std::vector<SplatList> splats(size, SplatList(sampler.film.window(), sampler.view.filter));
+        parallelFor(size, threads, [&](std::size_t i) {
+            const Tile& tile = tiles[begin + i];
+            Sample sample;
+            for (std::uint32_t s = first; s < first + count; ++s)
+                for (int y = tile.y; y < tile.y + tile.height; ++y)
+                    for (int x = tile.x; x < tile.x + tile.width; ++x)
+                        sampler.takeSample(x, y, s, sample, splats[i]);
+        });
+        addSplats(splats, sampler.view.filter, first, count, threads, sampler.film, sampler.images);
+    }
+}
+
 /// The first few in a fixed order: by sample, then by pixel.
 std::vector<BadSample> firstOf(std::vector<BadSample> bad) {
     std::sort(bad.begin(), bad.end(), [](const BadSample& a, const BadSample& b) {
-        return std::tie(a.sample, a.y, a.x) < std::tie(b.sample, b.y, b.x);
+        return std::tie(a.sample, a.y, a.x, a.technique) <
+               std::tie(b.sample, b.y, b.x, b.technique);
     });
     bad.resize(std::min(bad.size(), badSamplesKept));
     return bad;
@@ -89,11 +123,12 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
 }
 
 /// How many samples per pixel the next pass takes, at the speed so far.
-std::uint32_t passSize(std::uint32_t done, std::uint32_t target, double seconds, double limit) {
+std::uint32_t passSize(std::uint32_t done, std::uint32_t target, double seconds, double limit,
+                       double most) {
     if (done == 0) return 1;
     const double secondsPerSample = std::max(seconds / done, 1e-9);
     const double budget = std::min(secondsPerPass, limit - seconds);
-    const double fitting = std::max(1.0, budget / secondsPerSample);
+    const double fitting = std::max(1.0, std::min(budget / secondsPerSample, most));
     return std::min(target - done, static_cast<std::uint32_t>(std::min(fitting, 1e6)));
 }
 
@@ -103,24 +138,26 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
                     const Filter& filter, Film& film, const RenderSettings& settings,
                     const std::function<bool(const RenderProgress&)>& onPass) {
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<Tile> tiles = tilesOf(film.window());
+    const auto lightPaths = static_cast<std::uint64_t>(estimator.lightPathsPerSample());
+    const std::vector<Tile> tiles = tilesFor(film.window(), lightPaths > 0);
+    if (lightPaths > 0) film.expectSplats();
     const double pixels = static_cast<double>(film.window().width) * film.window().height;
+    const std::uint64_t framePixels = static_cast<std::uint64_t>(film.window().fullWidth) *
+                                      static_cast<std::uint64_t>(film.window().fullHeight);
+    const double mostSamples =
+        lightPaths > 0 ? static_cast<double>(samplesPerSplattingPass / (framePixels * lightPaths))
+                       : std::numeric_limits<double>::infinity();
     const std::uint64_t refusedBefore = scene.refusedRays();
-    Sampler sampler{scene, camera, estimator, filter, film, settings.seed};
+    const View view{scene, camera, filter};
+    Sampler sampler{view, estimator, film, settings.techniqueImages, settings.seed};
     RenderResult result;
-    // A pixel's samples are added in their order, whatever the pass and the thread: the same bits.
     while (result.samples < settings.samples && !result.wasInterrupted &&
            result.seconds < settings.timeLimitSeconds) {
         const std::uint32_t first = result.samples;
-        const std::uint32_t count =
-            passSize(first, settings.samples, result.seconds, settings.timeLimitSeconds);
-        parallelFor(tiles.size(), settings.threads, [&](std::size_t i) {
-            const Tile& tile = tiles[i];
-            for (int y = tile.y; y < tile.y + tile.height; ++y)
-                for (int x = tile.x; x < tile.x + tile.width; ++x)
-                    for (std::uint32_t s = first; s < first + count; ++s)
-                        sampler.takeSample(x, y, s);
-        });
+        const std::uint32_t count = passSize(first, settings.samples, result.seconds,
+                                             settings.timeLimitSeconds, mostSamples);
+        takePass(sampler, tiles, first, count, settings.threads);
+        film.addLightPaths(count * framePixels * lightPaths);
         film.addSamples(count);
         result.samples += count;
         result.seconds = secondsSince(start);

@@ -11,6 +11,7 @@
 #include "renderer/film.h"
 #include "renderer/filter.h"
 #include "renderer/scene.h"
+#include "renderer/technique_images.h"
 
 namespace etendue {
 
@@ -22,6 +23,7 @@ struct RenderSettings {
     std::uint64_t seed = 0;
     int threads = 1;
     double timeLimitSeconds = std::numeric_limits<double>::infinity();
+    TechniqueImages* techniqueImages = nullptr;  // receives them, if wanted
 };
 
 struct RenderProgress {
@@ -35,6 +37,7 @@ struct RenderProgress {
 struct BadSample {
     int x = 0, y = 0;  // pixel of the full frame
     std::uint32_t sample = 0;
+    Technique technique;  // that found it; s = t = 0 for path tracing
 };
 
 struct RenderResult {
@@ -46,7 +49,8 @@ struct RenderResult {
     std::uint64_t refusedRays = 0;      // see Intersector
 };
 
-/// Adds samples to every pixel of the film's window until the count or the time is reached; it ends
+/// Adds samples to every pixel of the film's window, and light paths from all of the frame if the
+/// estimator has any, until the count or the time is reached; it ends
 /// between passes only, so that every pixel has the same count. `onPass` is called between passes
 /// and returns false to stop.
 RenderResult render(const Scene& scene, const Camera& camera, const Estimator& estimator,

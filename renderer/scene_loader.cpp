@@ -47,6 +47,16 @@ void loadEstimator(const ConfigTable& table, LoadedScene& loaded) {
     e.maxDepth = static_cast<int>(table.integer("max_depth", {1, 10000}, e.maxDepth));
     e.russianRouletteDepth = static_cast<int>(
         table.integer("russian_roulette_depth", {0, 10000}, e.russianRouletteDepth));
+    e.lightPaths = static_cast<int>(table.integer("light_paths", {1, 1024}, e.lightPaths));
+    if (table.has("techniques")) {
+        if (e.kind != "bdpt") table.fail("techniques", "is for kind = \"bdpt\"");
+        const auto set = TechniqueSet::parse(table.text("techniques"));
+        if (!set)
+            table.fail("techniques",
+                       "expected names like s2t1, t1 or s0, separated by commas: s vertices from "
+                       "the light, t ≥ 1 from the camera");
+        e.techniques = *set;
+    }
     loaded.samples = static_cast<int>(table.integer("samples", {1, 1 << 30}, loaded.samples));
     table.finish();
 }

@@ -126,7 +126,7 @@ TEST_CASE("Film: a render goes on from a saved state to the same bits") {
     addNoise(resumed, 7, 9);
     CHECK(resumed.state().sums == whole.state().sums);
     CHECK(resumed.samples() == whole.samples());
-    CHECK_THROWS_AS(resumed.restore({{1.0, 2.0}, 1, 0}), std::invalid_argument);
+    CHECK_THROWS_AS(resumed.restore({.sums = {1.0, 2.0}, .splatSums = {}}), std::invalid_argument);
 }
 
 TEST_CASE("Film: normal, depth and position are means over what was met, albedo over all samples") {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "renderer/splats.h"
 #include "statistics/statistics.h"
 #include "tests/support/scenes.h"
 
@@ -72,26 +73,90 @@ intensity = [3, 3, 3]
 }  // namespace
 
 TEST_CASE("Render: the same bits with 1, 2 and 8 threads") {
-    const LoadedScene loaded = sceneFromText(mixedScene);
-    const std::vector<float> one = renderPixels(loaded, 4, 11, 1);
-    CHECK(renderPixels(loaded, 4, 11, 2) == one);
-    CHECK(renderPixels(loaded, 4, 11, 8) == one);
-    CHECK(renderPixels(loaded, 4, 12, 1) != one);
+    for (const char* kind : {"pt", "lt", "bdpt"}) {
+        CAPTURE(std::string(kind));
+        const LoadedScene loaded =
+            sceneFromText(mixedScene, {std::string("estimator.kind=") + kind});
+        const std::vector<float> one = renderPixels(loaded, 4, 11, 1);
+        CHECK(renderPixels(loaded, 4, 11, 2) == one);
+        CHECK(renderPixels(loaded, 4, 11, 8) == one);
+        CHECK(renderPixels(loaded, 4, 12, 1) != one);
+    }
+}
+
+TEST_CASE("Render: …and for any division into passes") {
+    const LoadedScene loaded = sceneFromText(mixedScene, {"estimator.kind=bdpt"});
+    const std::vector<float> whole = renderPixels(loaded, 6, 3);
+    Film film({48, 32, 0, 0, 48, 32});
+    const Filter filter(FilterKind::box);
+    const View view{*loaded.scene, *loaded.camera, filter};
+    const auto estimator = makeEstimator(loaded.estimator);
+    film.expectSplats();
+    // Sample by sample and pixel by pixel, in the order that passes keep to.
+    for (std::uint32_t s = 0; s < 6; ++s)
+        for (int tileY = 0; tileY < 32; tileY += 16)
+            for (int tileX = 0; tileX < 48; tileX += 16) {
+                std::vector<SplatList> splats(1, SplatList(film.window(), filter));
+                for (int y = tileY; y < tileY + 16; ++y)
+                    for (int x = tileX; x < tileX + 16; ++x) {
+                        Sample sample;
+                        estimator->takeSample(view, {3, x, y, s}, {}, sample);
+                        Spectrum sum;
+                        for (const Contribution& c : sample.contributions)
+                            if (c.isSplat)
+                                splats[0].add(s, c);
+                            else
+                                sum += c.value * c.weight;
+                        film.add(x, y, sum);
+                    }
+                addSplats(splats, filter, s, 1, 1, film, nullptr);
+            }
+    film.addSamples(6);
+    film.addLightPaths(6 * 48 * 32);
+    CHECK(film.channels().front().pixels == whole);
 }
 
 TEST_CASE("Render: a crop is the window of the full frame, bit for bit") {
-    const LoadedScene loaded = sceneFromText(mixedScene);
-    const std::vector<float> full = renderPixels(loaded, 4, 5);
-    Film film({48, 32, 10, 7, 20, 15});
+    for (const char* kind : {"pt", "lt", "bdpt"}) {
+        CAPTURE(std::string(kind));
+        const LoadedScene loaded =
+            sceneFromText(mixedScene, {std::string("estimator.kind=") + kind});
+        const std::vector<float> full = renderPixels(loaded, 4, 5);
+        Film film({48, 32, 10, 7, 20, 15});
+        RenderSettings settings;
+        settings.samples = 4;
+        settings.seed = 5;
+        render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator),
+               Filter(FilterKind::box), film, settings, {});
+        const std::vector<float> crop = film.channels().front().pixels;
+        for (std::size_t y = 0; y < 15; ++y)
+            for (std::size_t i = 0; i < 20 * 3; ++i)
+                REQUIRE(crop[y * 20 * 3 + i] == full[((y + 7) * 48 + 10) * 3 + i]);
+    }
+}
+
+TEST_CASE("Render: the weighted pictures of all techniques sum to the picture") {
+    const LoadedScene loaded = sceneFromText(
+        mixedScene, {"estimator.kind=bdpt", "estimator.max_depth=4", "film.filter=gaussian"});
+    const FrameWindow window{48, 32, 0, 0, 48, 32};
+    Film film(window);
+    TechniqueImages techniques(window);
     RenderSettings settings;
-    settings.samples = 4;
-    settings.seed = 5;
-    render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator), Filter(FilterKind::box),
-           film, settings, {});
-    const std::vector<float> crop = film.channels().front().pixels;
-    for (std::size_t y = 0; y < 15; ++y)
-        for (std::size_t i = 0; i < 20 * 3; ++i)
-            REQUIRE(crop[y * 20 * 3 + i] == full[((y + 7) * 48 + 10) * 3 + i]);
+    settings.samples = 8;
+    settings.techniqueImages = &techniques;
+    render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator),
+           Filter(loaded.film.filter, loaded.film.filterRadius), film, settings, {});
+    const std::vector<float> picture = film.channels().front().pixels;
+    std::vector<double> sum(picture.size(), 0.0);
+    int weighted = 0;
+    for (const ExrChannels& image : techniques.channels(film.samples(), film.state().lightPaths)) {
+        if (image.names.front().find("unweighted") != std::string::npos) continue;
+        ++weighted;
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += static_cast<double>(image.pixels[i]);
+    }
+    CHECK(weighted == 2 + 3 + 4 + 5);  // all with 1 … 4 edges
+    for (std::size_t i = 0; i < sum.size(); ++i)
+        CHECK(sum[i] == doctest::Approx(static_cast<double>(picture[i])).epsilon(1e-5));
 }
 
 TEST_CASE("Render: a filter changes no constant picture, at the border neither") {

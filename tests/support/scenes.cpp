@@ -31,18 +31,14 @@ std::vector<float> renderPixels(const LoadedScene& loaded, std::uint32_t samples
 
 std::vector<double> batchRadiances(const LoadedScene& loaded, Vec3 origin, Vec3 direction,
                                    int batches, int samples) {
-    const auto estimator = makeEstimator(loaded.estimator);
-    CameraRay ray{};
-    ray.origin = origin;
-    ray.direction = direction;
     std::vector<double> means;
     for (int b = 0; b < batches; ++b) {
         double sum = 0.0;
         for (int s = 0; s < samples; ++s) {
             RandomStream random(1, static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(s),
                                 RandomDomain::test);
-            sum += static_cast<double>(
-                estimator->radiance(*loaded.scene, ray, {}, random, nullptr)[0]);
+            sum += static_cast<double>(pathTracedRadiance(*loaded.scene, {origin, direction}, {},
+                                                          loaded.estimator, random)[0]);
         }
         means.push_back(sum / samples);
     }

@@ -1,0 +1,44 @@
+#include "renderer/technique_images.h"
+
+namespace etendue {
+
+TechniqueImages::Sums& TechniqueImages::sumsOf(Technique technique) {
+    const std::lock_guard lock(mutex_);
+    std::unique_ptr<Sums>& sums = images_[technique];
+    if (!sums)
+        sums = std::make_unique<Sums>(6 * static_cast<std::size_t>(window_.width) *
+                                      static_cast<std::size_t>(window_.height));
+    return *sums;
+}
+
+void TechniqueImages::add(int x, int y, Technique technique, const Spectrum& value, float weight) {
+    Sums& sums = sumsOf(technique);
+    const auto pixel =
+        static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
+        static_cast<std::size_t>(x - window_.x);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double lane = value[static_cast<int>(i)];
+        sums[6 * pixel + i] += lane * weight;
+        sums[6 * pixel + 3 + i] += lane;
+    }
+}
+
+std::vector<ExrChannels> TechniqueImages::channels(std::uint64_t samples,
+                                                   std::uint64_t lightPaths) const {
+    std::vector<ExrChannels> result;
+    for (const auto& [technique, sums] : images_) {
+        const double count = static_cast<double>(technique.t == 1 ? lightPaths : samples);
+        for (const bool isWeighted : {true, false}) {
+            const std::string name = nameOf(technique) + (isWeighted ? "." : ".unweighted.");
+            ExrChannels image{{name + "R", name + "G", name + "B"}, {}};
+            for (std::size_t p = 0; p < sums->size(); p += 6)
+                for (std::size_t i = 0; i < 3; ++i)
+                    image.pixels.push_back(
+                        static_cast<float>((*sums)[p + i + (isWeighted ? 0 : 3)] / count));
+            result.push_back(std::move(image));
+        }
+    }
+    return result;
+}
+
+}  // namespace etendue

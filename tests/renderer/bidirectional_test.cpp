@@ -1,0 +1,122 @@
+// Path tracing, light tracing and bidirectional path tracing estimate one picture.
+#include <doctest/doctest.h>
+
+#include "tests/support/scenes.h"
+
+using namespace etendue;
+
+namespace {
+
+constexpr int width = 24, height = 16, tileSize = 8;
+constexpr std::uint64_t seeds = 16;
+
+std::string sceneWith(const std::string& camera, const std::string& rest) {
+    return "[film]\nwidth = 24\nheight = 16\n[estimator]\nmax_depth = 5\n[camera]\n" + camera +
+           rest;
+}
+
+const std::string pinhole =
+    "model = \"pinhole\"\nfrom = [0.2, 1, 3.9]\nto = [0, 0.9, 0]\nfov = 50\n";
+const std::string thinLens =
+    "model = \"thin-lens\"\nfrom = [0.2, 1, 3.9]\nto = [0, 0.9, 0]\nfov = 50\nf_number = "
+    "0.4\nfocus_distance = 3.4\n";
+
+/// A floor, a back wall and a block of given materials.
+std::string room(const std::string& materials) {
+    return materials + R"(
+[[mesh]]
+shape = "rectangle"
+material = "floor"
+transform = [{scale = 3}, {rotate = [1, 0, 0, -90]}]
+[[mesh]]
+shape = "rectangle"
+material = "wall"
+transform = [{scale = 3}, {translate = [0, 1, -1]}]
+[[mesh]]
+shape = "sphere"
+segments = 12
+material = "ball"
+transform = [{scale = 0.6}, {translate = [0.3, 0.6, 0]}]
+)";
+}
+
+const std::string areaLamp = R"(
+[[material]]
+name = "lamp"
+color = [0, 0, 0]
+emission = [9, 8, 6]
+[[mesh]]
+shape = "rectangle"
+material = "lamp"
+transform = [{scale = 0.4}, {rotate = [1, 0, 0, 90]}, {translate = [-0.4, 2.2, 0.3]}]
+)";
+
+const std::string matte =
+    "[[material]]\nname = \"floor\"\ncolor = [0.7, 0.6, 0.5]\n"
+    "[[material]]\nname = \"wall\"\ncolor = [0.4, 0.5, 0.7]\n"
+    "[[material]]\nname = \"ball\"\ncolor = [0.6, 0.6, 0.6]\n";
+const std::string glossy =
+    "[[material]]\nname = \"floor\"\ntype = \"plastic\"\ncolor = [0.5, 0.4, 0.3]\nroughness = 0.5\n"
+    "[[material]]\nname = \"wall\"\ntype = \"conductor\"\nmetal = \"gold\"\nroughness = 0.6\n"
+    "[[material]]\nname = \"ball\"\ntype = \"dielectric\"\nroughness = 0.5\n";
+const std::string mirrors =
+    "[[material]]\nname = \"floor\"\ncolor = [0.5, 0.5, 0.5]\n"
+    "[[material]]\nname = \"wall\"\ntype = \"conductor\"\nmetal = \"silver\"\nroughness = 0\n"
+    "[[material]]\nname = \"ball\"\ntype = \"dielectric\"\n";
+
+std::vector<std::vector<float>> pictures(const LoadedScene& loaded, std::uint32_t samples,
+                                         std::uint64_t firstSeed) {
+    std::vector<std::vector<float>> result;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed)
+        result.push_back(renderPixels(loaded, samples, firstSeed + seed, 2));
+    return result;
+}
+
+/// `bound`: of the relative bias, with its 99 % confidence interval.
+void checkAgreement(const std::string& scene, const std::vector<std::string>& estimators,
+                    std::uint32_t samples, double bound) {
+    const auto reference = pictures(sceneFromText(scene), samples, 1);
+    std::uint64_t firstSeed = 1000;
+    for (const std::string& estimator : estimators) {
+        CAPTURE(estimator);
+        const LoadedScene loaded =
+            sceneFromText(scene, {"estimator.kind=" + estimator.substr(0, estimator.find(' '))});
+        const auto other = pictures(loaded, samples, firstSeed += 1000);
+        const PictureComparison comparison = comparePictures(other, reference, width, tileSize);
+        CAPTURE(comparison.smallestP);
+        CAPTURE(comparison.relativeBias);
+        CAPTURE(comparison.relativeBiasHalfWidth);
+        CHECK(comparison.agree());
+        CHECK(comparison.isEquivalent(bound));
+    }
+}
+
+}  // namespace
+
+TEST_CASE("Estimators: pt, lt and bdpt agree on matte surfaces under an area light") {
+    for (const std::string& camera : {pinhole, thinLens})
+        checkAgreement(sceneWith(camera, room(matte) + areaLamp), {"lt", "bdpt"}, 64, 0.05);
+}
+
+TEST_CASE("Estimators: …on glossy ones") {
+    checkAgreement(sceneWith(thinLens, room(glossy) + areaLamp), {"lt", "bdpt"}, 128, 0.05);
+}
+
+TEST_CASE("Estimators: …by mirrors and glass, where the light has extent") {
+    checkAgreement(sceneWith(thinLens, room(mirrors) + areaLamp), {"bdpt"}, 128, 0.08);
+}
+
+TEST_CASE("Estimators: …under each kind of light without extent, and from far away") {
+    const char* lights[] = {
+        "type = \"point\"\nposition = [-0.5, 2, 1]\nintensity = [3, 4, 5]\n",
+        "type = \"spot\"\nposition = [-0.5, 2, 1]\ndirection = [0.3, -1, -0.4]\nintensity = [9, 8, "
+        "7]\nouter_angle = 50\n",
+        "type = \"directional\"\ndirection = [0.3, -1, -0.6]\nirradiance = [2, 2, 3]\n",
+        "type = \"constant\"\nradiance = [1, 1.5, 2]\n",
+    };
+    for (const std::string light : lights) {
+        CAPTURE(light);
+        checkAgreement(sceneWith(thinLens, room(matte) + "[[light]]\n" + light), {"lt", "bdpt"},
+                       128, 0.08);
+    }
+}

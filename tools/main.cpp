@@ -85,6 +85,18 @@ void addRender(CLI::App& app, RenderCommand& c) {
         ->check(
             CLI::IsMember({"albedo", "normal", "depth", "position", "variance"}).description(""))
         ->type_name("LIST");
+    render
+        ->add_option_function<std::string>(
+            "--techniques",
+            [&c](const std::string& list) {
+                c.overrides.push_back("estimator.techniques=" + list);
+            },
+            "Of bdpt: only these, such as s0t2,s2t1; t1: all that connect to the lens")
+        ->type_name("LIST");
+    render
+        ->add_option("--technique-images", c.techniqueImages,
+                     "An EXR of all techniques: s2t1.R … weighted, s2t1.unweighted.R … not")
+        ->type_name("FILE");
     addOverrides(render, c.overrides);
     const std::map<std::string, ProgressStyle> styles{{"auto", ProgressStyle::automatic},
                                                       {"bar", ProgressStyle::bar},

@@ -99,7 +99,8 @@ void reportDefects(const RenderCommand& command, const RenderResult& result) {
             "etendue: {} samples were not finite or negative and were left out; the first:\n",
             result.badSampleCount));
         for (const BadSample& b : result.badSamples)
-            say(fmt::format("  seed {} pixel {},{} sample {}\n", command.seed, b.x, b.y, b.sample));
+            say(fmt::format("  seed {} pixel {},{} sample {} ({})\n", command.seed, b.x, b.y,
+                            b.sample, b.technique == Technique{} ? "sum" : nameOf(b.technique)));
     }
     if (result.refusedRays > 0)
         say(fmt::format("etendue: {} rays had no finite place in the scene and met nothing\n",
@@ -121,9 +122,13 @@ LoadOptions loadOptions(const RenderCommand& command, int threads) {
 }
 
 void writePictures(const RenderCommand& command, const LoadedScene& loaded, const Film& film,
-                   const RenderResult& result) {
+                   const TechniqueImages& techniques, const RenderResult& result) {
     const std::vector<ExrChannels> channels = film.channels();
-    writeExr(command.output, film.window(), channels, metadataFor(command, loaded, result));
+    const Metadata metadata = metadataFor(command, loaded, result);
+    writeExr(command.output, film.window(), channels, metadata);
+    if (!command.techniqueImages.empty())
+        writeExr(command.techniqueImages, film.window(),
+                 techniques.channels(film.samples(), film.state().lightPaths), metadata);
     if (!command.preview.empty())
         writePng(
             command.preview, film.window().width, film.window().height,
@@ -153,12 +158,30 @@ void checkWritable(const std::filesystem::path& file, const std::string& extensi
         throw InputError(fmt::format("{}: is a folder, not a file to write", file.string()));
 }
 
+/// What only some estimators can give.
+void checkEstimator(const RenderCommand& command, const Estimator& estimator) {
+    if (estimator.lightPathsPerSample() == 0) {
+        if (!command.techniqueImages.empty())
+            throw InputError(
+                "--technique-images: the estimator is \"pt\", which has none; "
+                "-s estimator.kind=bdpt has",
+                ExitCode::usage);
+        return;
+    }
+    if (layersFor(command).variance)
+        throw InputError(
+            "--layers variance: light paths fall all over the picture, and their "
+            "spread within a pixel is not recorded; -s estimator.kind=pt has it",
+            ExitCode::usage);
+}
+
 }  // namespace
 
 ExitCode runRender(const RenderCommand& command) {
     const bool isQuiet = command.progress == ProgressStyle::quiet;
     checkWritable(command.output, ".exr");
     checkWritable(command.preview, ".png");
+    checkWritable(command.techniqueImages, ".exr");
     const int threads = command.threads.value_or(hardwareThreads());
     LoadOptions options = loadOptions(command, threads);
     FitBar fitBar;
@@ -180,6 +203,9 @@ ExitCode runRender(const RenderCommand& command) {
     settings.seed = command.seed;
     settings.threads = threads;
     if (command.timeLimitSeconds) settings.timeLimitSeconds = *command.timeLimitSeconds;
+    checkEstimator(command, *estimator);
+    TechniqueImages techniques(film.window());
+    if (!command.techniqueImages.empty()) settings.techniqueImages = &techniques;
 
     std::signal(SIGINT, requestStop);
     std::signal(SIGTERM, requestStop);
@@ -193,7 +219,7 @@ ExitCode runRender(const RenderCommand& command) {
                                        });
     progress.finish(last);
     reportDefects(command, result);
-    writePictures(command, loaded, film, result);
+    writePictures(command, loaded, film, techniques, result);
     if (result.wasInterrupted && !isQuiet)
         say(fmt::format("stopped early: {} of {} samples per pixel are in the picture\n",
                         result.samples, settings.samples));

@@ -13,7 +13,7 @@
 namespace etendue {
 
 struct RenderCommand {
-    std::filesystem::path scene, output, preview;
+    std::filesystem::path scene, output, preview, techniqueImages;
     std::optional<int> samples, threads;
     std::uint64_t seed = 0;
     std::optional<double> timeLimitSeconds;

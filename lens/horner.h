@@ -11,26 +11,13 @@
 // term.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "lens/pack.h"
+#include "lens/horner_sweep.h"
 #include "lens/polynomial_basis.h"
 
 namespace etendue {
-
-/// The sums of `Jets` packs of polynomials, each as [0] its value and [By − l] its derivative by
-/// the variable of level l for l < By, and of `Values` packs without derivatives.
-template <class Pack, int Jets, int Values, int By>
-struct HornerSums {
-    // Plain arrays: GCC 12 keeps them in registers, std::array not.
-    Pack jets[Jets == 0 ? 1 : Jets][1 + By];
-    Pack values[Values == 0 ? 1 : Values];
-};
-
-/// What the lanes of a pack stand for: slots, at one point, or points, of one slot.
-enum class Lanes { slots, points };
 
 template <class T>
 struct HornerScheme {
@@ -39,84 +26,11 @@ struct HornerScheme {
     HornerScheme(const std::vector<Exponents>& terms, const Eigen::MatrixXd& coefficients,
                  const std::vector<std::size_t>& order);
 
+    HornerTerms<T> terms() const { return {counts.data(), coefficients.data(), slots}; }
+
     std::size_t slots;
     std::vector<std::uint8_t> counts;  // of the powers of each sum, in the order of evaluation
     std::vector<T> coefficients;       // [term][slot]
-};
-
-/// One evaluation under way.
-template <Lanes lanes, class T, int Width, int Jets, int Values, int By, int Levels>
-class HornerSweep {
-public:
-    using Number = Pack<T, Width>;
-    using Sums = HornerSums<Number, Jets, Values, By>;
-
-    /// From slot `slot` on: the jets, then the values.
-    HornerSweep(const HornerScheme<T>& scheme, int slot,
-                const std::array<Number, Levels>& variables)
-        : count_(scheme.counts.data()),
-          coefficients_(scheme.coefficients.data() + slot),
-          slots_(scheme.slots),
-          variables_(variables) {}
-
-    [[gnu::always_inline]] Sums run() {
-        Sums result;
-        sum<0>(result);
-        return result;
-    }
-
-private:
-    /// Of the sums of a level, how many variables have derivatives: its own and those within.
-    static constexpr int derivatives(int level) { return level < By ? By - level : 0; }
-
-    /// Sets the parts that the level has. Inlined, so that sums stay in registers.
-    template <int Level>
-    [[gnu::always_inline]] void sum(Sums& result) {
-        if constexpr (Level == Levels) {
-            takeCoefficients(result);
-        } else {
-            int powers = *count_++;
-            sum<Level + 1>(result);
-            if constexpr (Level < By)
-                for (auto& jet : result.jets) jet[derivatives(Level)] = Number::all(T(0));
-            while (--powers > 0) {
-                Sums term;
-                sum<Level + 1>(term);
-                multiplyAdd<Level>(result, term);
-            }
-        }
-    }
-
-    [[gnu::always_inline]] void takeCoefficients(Sums& result) {
-        constexpr int stride = lanes == Lanes::slots ? Width : 1;
-        for (int i = 0; i < Jets; ++i) result.jets[i][0] = coefficient(i * stride);
-        for (int i = 0; i < Values; ++i) result.values[i] = coefficient((Jets + i) * stride);
-        coefficients_ += slots_;
-    }
-    [[gnu::always_inline]] Number coefficient(int slot) const {
-        if constexpr (lanes == Lanes::slots) return Number::load(coefficients_ + slot);
-        return Number::all(coefficients_[slot]);
-    }
-
-    /// result = result × variable + term, with derivatives.
-    template <int Level>
-    [[gnu::always_inline]] void multiplyAdd(Sums& result, const Sums& term) {
-        constexpr int own = derivatives(Level), inner = derivatives(Level + 1);
-        const Number& x = variables_[Level];
-        for (int i = 0; i < Jets; ++i) {
-            auto& jet = result.jets[i];
-            if constexpr (own > inner) jet[own] = fma(jet[own], x, jet[0]);
-            for (int part = 0; part <= inner; ++part)
-                jet[part] = fma(jet[part], x, term.jets[i][part]);
-        }
-        for (int i = 0; i < Values; ++i)
-            result.values[i] = fma(result.values[i], x, term.values[i]);
-    }
-
-    const std::uint8_t* count_;
-    const T* coefficients_;
-    std::size_t slots_;
-    const std::array<Number, Levels>& variables_;
 };
 
 }  // namespace etendue

@@ -1,10 +1,12 @@
 // Pack: numbers side by side in vector registers, with an exactly rounded multiply-add, so that the
 // same bits come from every compiler and every width. All of it is inlined, however large the
 // function around it: a call would send registers through memory.
+//
+// Code for wider registers than the rest of the program may use includes this file, too. It must
+// not share an inline function with that rest, of which a linker keeps any one: the width is part
+// of every type's name, and functions of the standard library are not called.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <type_traits>
 #ifdef __FMA__
@@ -13,11 +15,12 @@
 
 namespace etendue {
 
-/// T is float or double; N a power of two.
-template <class T, int N>
+/// T is float or double; N and RegisterBytes are powers of two.
+template <class T, int N, int RegisterBytes = 32>
 class Pack {
 public:
-    static constexpr int lanes = N;
+    using Scalar = T;
+    static constexpr int lanes = N, registerBytes = RegisterBytes;
 
     [[gnu::always_inline]] static Pack load(const T* from) {
         Pack result;
@@ -67,12 +70,8 @@ public:
     }
 
 private:
-#ifdef __AVX512F__
-    static constexpr int registerBytes = 64;
-#else
-    static constexpr int registerBytes = 32;
-#endif
-    static constexpr int width = std::min<int>(N, registerBytes / sizeof(T));
+    static constexpr int fitting = RegisterBytes / static_cast<int>(sizeof(T));
+    static constexpr int width = N < fitting ? N : fitting;
     static constexpr int count = N / width;
     typedef T Register __attribute__((vector_size(width * sizeof(T))));
 
@@ -87,7 +86,12 @@ private:
         if constexpr (std::is_same_v<T, float> && width == 4) return _mm_fmadd_ps(a, b, c);
 #endif
         Register result;
-        for (int lane = 0; lane < width; ++lane) result[lane] = std::fma(a[lane], b[lane], c[lane]);
+        for (int lane = 0; lane < width; ++lane) {
+            if constexpr (std::is_same_v<T, float>)
+                result[lane] = __builtin_fmaf(a[lane], b[lane], c[lane]);
+            else
+                result[lane] = __builtin_fma(a[lane], b[lane], c[lane]);
+        }
         return result;
     }
 

@@ -3,8 +3,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "lens/polynomial_compose.h"
-
 namespace etendue {
 
 namespace {
@@ -22,8 +20,12 @@ Eigen::MatrixXd inSlots(const Eigen::MatrixXd& coefficients, const std::vector<i
 }  // namespace
 
 template <class T>
-PolynomialEvaluator<T>::PolynomialEvaluator(const SparsePolynomial& polynomial)
-    : basis_(polynomial.basis), outputs_(polynomial.outputs), scaling_(polynomial.scaling) {
+PolynomialEvaluator<T>::PolynomialEvaluator(const SparsePolynomial& polynomial,
+                                            VectorRegisters registers)
+    : basis_(polynomial.basis),
+      outputs_(polynomial.outputs),
+      scaling_(polynomial.scaling),
+      registers_(registers) {
     if (outputs_.total() > mostOutputs || outputs_.vectors > mostVectors)
         throw std::invalid_argument("polynomial: more outputs than can be evaluated together");
     const Eigen::Vector2d coupled = scaling_.secondScale * scaling_.coupling;
@@ -44,18 +46,20 @@ typename PolynomialEvaluator<T>::Group PolynomialEvaluator<T>::compile(
     const bool hasVectors = !rows.empty();
     if (hasVectors) rows.resize(4, -1);
     if (hasVectors && axial) rows = {rows[0], rows[2], rows[1], rows[3]};
-    std::array<int, 4> components{-1, -1, -1, -1};
+    SlotUse use{0, {-1, -1, -1, -1}, 0, static_cast<int>(scalars.size())};
+    if (!scalars.empty())
+        use.firstScalar = group.outputs[static_cast<std::size_t>(scalars.front())];
     for (std::size_t slot = 0; slot < rows.size(); ++slot)
-        if (rows[slot] >= 0) components[slot] = group.outputs[static_cast<std::size_t>(rows[slot])];
+        if (rows[slot] >= 0) {
+            use.vectorSlots = static_cast<int>(slot) + 1;
+            use.components[slot] = group.outputs[static_cast<std::size_t>(rows[slot])];
+        }
     rows.insert(rows.end(), scalars.begin(), scalars.end());
     rows.resize((rows.size() + 3) / 4 * 4, -1);
     // Those outermost whose derivatives are wanted most often: ρ κ σ w, x y px py w.
     const std::vector<std::size_t> levels =
         axial ? std::vector<std::size_t>{0, 2, 1, 3} : std::vector<std::size_t>{0, 1, 2, 3, 4};
-    return {hasVectors, components,
-            scalars.empty() ? 0 : group.outputs[static_cast<std::size_t>(scalars.front())],
-            static_cast<int>(scalars.size()),
-            HornerScheme<T>(group.terms, inSlots(group.coefficients, rows), levels)};
+    return {use, HornerScheme<T>(group.terms, inSlots(group.coefficients, rows), levels)};
 }
 
 template class PolynomialEvaluator<float>;

@@ -7,10 +7,12 @@
 
 #include "lens/horner.h"
 #include "lens/polynomial_basis.h"
+#include "lens/polynomial_batch.h"
+#include "lens/polynomial_compose.h"
 
 namespace etendue {
 
-constexpr int mostVectors = 2, mostOutputs = 10;
+constexpr int mostOutputs = 10;
 
 /// `Size` numbers side by side.
 template <class T, int Size>
@@ -41,18 +43,23 @@ struct PolynomialResult {
     PolynomialSlopes<Number, 4> jacobian;  // by s.x, s.y, p.x, p.y
 };
 
-/// How scaled inputs grow with inputs: s by `sensor`, p by `second`, and p with s by `coupled`.
-template <class T>
-struct InputFactors {
-    T sensor, second, coupled[2];
-};
+template <class Number>
+PolynomialBySensor<Number> bySensorOf(const PolynomialResult<Number>& all) {
+    PolynomialBySensor<Number> result;
+    result.values = all.values;
+    for (std::size_t row = 0; row < all.jacobian.size(); ++row)
+        result.bySensor[row] = {all.jacobian[row][0], all.jacobian[row][1]};
+    return result;
+}
 
 /// T is float or double; the scaling of a single input is done in double all the same.
 template <class T>
 class PolynomialEvaluator {
 public:
     /// Throws std::invalid_argument for more than mostOutputs outputs or mostVectors vectors.
-    explicit PolynomialEvaluator(const SparsePolynomial& polynomial);
+    /// `registers`: for batches; no wider ones than there are.
+    explicit PolynomialEvaluator(const SparsePolynomial& polynomial,
+                                 VectorRegisters registers = widestRegisters());
 
     PolynomialValues<T> values(const PolynomialInput& input) const;
     PolynomialBySensor<T> evaluateBySensor(const PolynomialInput& input) const;
@@ -73,9 +80,7 @@ private:
     /// axial basis b₁ b₂ c₁ c₂ of the vectors Σ mₜ (bₜ s + cₜ p), else components of vectors. The
     /// scalars, side by side among the outputs, have the slots from then on.
     struct Group {
-        bool hasVectors;
-        std::array<int, 4> components;  // outputs of the first slots, or -1; not axial
-        int firstScalar, scalars;
+        SlotUse use;
         HornerScheme<T> scheme;
     };
 
@@ -87,10 +92,6 @@ private:
     template <int Inputs, int Levels>
     void evaluateGroup(const Group& group, const std::array<T, 5>& scaled,
                        PolynomialValues<T>& values, PolynomialSlopes<T, Inputs>& slopes) const;
-    template <int Inputs, int Levels, int Size>
-    void evaluateGroup(const Group& group, const BatchInput<T, Size>& input, int first,
-                       PolynomialValues<Batch<T, Size>>& values,
-                       PolynomialSlopes<Batch<T, Size>, Inputs>& slopes) const;
     template <int Inputs, int Size>
     void evaluateBatch(const BatchInput<T, Size>& input, PolynomialValues<Batch<T, Size>>& values,
                        PolynomialSlopes<Batch<T, Size>, Inputs>& slopes) const;
@@ -100,6 +101,7 @@ private:
     InputScaling scaling_;
     InputFactors<T> factors_;
     std::vector<Group> groups_;
+    VectorRegisters registers_;
 };
 
 }  // namespace etendue

@@ -1,23 +1,25 @@
 // From sums over monomials to outputs and their derivatives: what evaluating a polynomial at one
-// input and at several side by side have in common. Number is a Pack.
+// input and at several side by side have in common. Number is a Pack. As pack.h, for code of any
+// register width: no Eigen here.
 #pragma once
 
-#include "lens/polynomial.h"
+#include <array>
+
+#include "lens/pack.h"
 
 namespace etendue {
+
+constexpr int mostVectors = 2;
+
+/// How scaled inputs grow with inputs: s by `sensor`, p by `second`, and p with s by `coupled`.
+template <class T>
+struct InputFactors {
+    T sensor, second, coupled[2];
+};
 
 /// By how many of the outermost levels' variables sums are to be derived for derivatives by
 /// `inputs` inputs.
 constexpr int derivedLevels(int levels, int inputs) { return inputs == 4 ? levels - 1 : inputs; }
-
-template <class Number>
-PolynomialBySensor<Number> bySensorOf(const PolynomialResult<Number>& all) {
-    PolynomialBySensor<Number> result;
-    result.values = all.values;
-    for (std::size_t row = 0; row < all.jacobian.size(); ++row)
-        result.bySensor[row] = {all.jacobian[row][0], all.jacobian[row][1]};
-    return result;
-}
 
 /// The variables of the levels: ρ κ σ w of the axial basis' four, else the scaled inputs.
 template <int Levels, class Number>

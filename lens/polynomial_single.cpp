@@ -3,7 +3,6 @@
 #include <type_traits>
 
 #include "lens/polynomial.h"
-#include "lens/polynomial_compose.h"
 
 namespace etendue {
 
@@ -54,14 +53,15 @@ void PolynomialEvaluator<T>::evaluateGroup(const Group& group, const std::array<
                                            PolynomialValues<T>& values,
                                            PolynomialSlopes<T, Inputs>& slopes) const {
     using Slots = Pack<T, 4>;
+    const SlotUse& use = group.use;
     constexpr int by = derivedLevels(Levels, Inputs);
     Slots in[5];
     for (std::size_t i = 0; i < scaled.size(); ++i) in[i] = Slots::all(scaled[i]);
     const std::array<Slots, Levels> variables = levelVariables<Levels>(in);
     const auto storeScalars = [&](int first, const Slots& sums) {
         for (int lane = 0; lane < 4; ++lane)
-            if (first + lane < group.scalars)
-                values[static_cast<std::size_t>(group.firstScalar + first + lane)] = sums[lane];
+            if (first + lane < use.scalars)
+                values[static_cast<std::size_t>(use.firstScalar + first + lane)] = sums[lane];
     };
     const auto storeVectors = [&](const auto& jet) {
         const auto entry = [&](int row, int column) -> T& {
@@ -84,7 +84,7 @@ void PolynomialEvaluator<T>::evaluateGroup(const Group& group, const std::array<
         } else {
             composeComponent<Inputs>(jet, factors_, [&](int column, const Slots& component) {
                 for (int slot = 0; slot < 4; ++slot) {
-                    const int row = group.components[static_cast<std::size_t>(slot)];
+                    const int row = use.components[slot];
                     if (row >= 0) entry(row, column) = component[slot];
                 }
             });
@@ -92,28 +92,30 @@ void PolynomialEvaluator<T>::evaluateGroup(const Group& group, const std::array<
     };
     const auto sweep = [&]<int Jets, int Values>(std::integral_constant<int, Jets>,
                                                  std::integral_constant<int, Values>, int slot) {
-        return HornerSweep < Lanes::slots, T, 4, Jets, Values, Jets == 0 ? 0 : by,
-               Levels > (group.scheme, slot, variables).run();
+        constexpr int derived = Jets == 0 ? 0 : by;
+        return HornerSweep<Lanes::slots, Slots, Jets, Values, derived, Levels>(group.scheme.terms(),
+                                                                               slot, variables)
+            .run();
     };
     constexpr std::integral_constant<int, 0> none;
     constexpr std::integral_constant<int, 1> one;
     constexpr std::integral_constant<int, 2> two;
     int slot = 0, scalar = 0;
-    if (group.hasVectors && group.scalars > 0) {
+    if (use.vectorSlots > 0 && use.scalars > 0) {
         const auto sums = sweep(one, one, slot);
         storeVectors(sums.jets[0]);
         storeScalars(scalar, sums.values[0]);
         slot += 8;
         scalar += 4;
-    } else if (group.hasVectors) {
+    } else if (use.vectorSlots > 0) {
         storeVectors(sweep(one, none, slot).jets[0]);
     }
-    for (; scalar + 4 < group.scalars; slot += 8, scalar += 8) {
+    for (; scalar + 4 < use.scalars; slot += 8, scalar += 8) {
         const auto sums = sweep(none, two, slot);
         storeScalars(scalar, sums.values[0]);
         storeScalars(scalar + 4, sums.values[1]);
     }
-    if (scalar < group.scalars) storeScalars(scalar, sweep(none, one, slot).values[0]);
+    if (scalar < use.scalars) storeScalars(scalar, sweep(none, one, slot).values[0]);
 }
 
 // Members alone: the class is instantiated where its constructor is.

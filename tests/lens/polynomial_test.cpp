@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <random>
 #include <stdexcept>
@@ -181,6 +182,20 @@ struct BatchOf {
     static constexpr int count = size;
 };
 
+template <class T, int size>
+BatchInput<T, size> batchOf(const std::vector<PolynomialInput>& inputs) {
+    BatchInput<T, size> batch;
+    for (int i = 0; i < size; ++i) {
+        const PolynomialInput& input = inputs[static_cast<std::size_t>(i)];
+        batch.sx[i] = static_cast<T>(input.s.x());
+        batch.sy[i] = static_cast<T>(input.s.y());
+        batch.px[i] = static_cast<T>(input.p.x());
+        batch.py[i] = static_cast<T>(input.p.y());
+        batch.wavelengthNm[i] = static_cast<T>(input.wavelengthNm);
+    }
+    return batch;
+}
+
 TEST_CASE_TEMPLATE("PolynomialEvaluator: a batch gives what single evaluations give", Kind,
                    BatchOf<float, 8>, BatchOf<float, 16>, BatchOf<double, 8>, BatchOf<double, 16>) {
     using T = typename Kind::Number;
@@ -192,15 +207,7 @@ TEST_CASE_TEMPLATE("PolynomialEvaluator: a batch gives what single evaluations g
             const PolynomialEvaluator<T> evaluator(polynomial);
             const PolynomialEvaluator<double> exact(polynomial);
             const std::vector<PolynomialInput> inputs = someInputs(count);
-            BatchInput<T, count> batch;
-            for (int i = 0; i < count; ++i) {
-                const PolynomialInput& input = inputs[static_cast<std::size_t>(i)];
-                batch.sx[i] = static_cast<T>(input.s.x());
-                batch.sy[i] = static_cast<T>(input.s.y());
-                batch.px[i] = static_cast<T>(input.p.x());
-                batch.py[i] = static_cast<T>(input.p.y());
-                batch.wavelengthNm[i] = static_cast<T>(input.wavelengthNm);
-            }
+            const BatchInput<T, count> batch = batchOf<T, count>(inputs);
             const PolynomialValues<Batch<T, count>> values = evaluator.values(batch);
             const PolynomialBySensor<Batch<T, count>> some = evaluator.evaluateBySensor(batch);
             const PolynomialResult<Batch<T, count>> all = evaluator.evaluate(batch);
@@ -225,6 +232,43 @@ TEST_CASE_TEMPLATE("PolynomialEvaluator: a batch gives what single evaluations g
                 }
             }
         }
+}
+
+TEST_CASE_TEMPLATE("PolynomialEvaluator: registers of either width give the same bits", Kind,
+                   BatchOf<float, 8>, BatchOf<float, 16>, BatchOf<double, 8>, BatchOf<double, 16>) {
+    using T = typename Kind::Number;
+    constexpr int count = Kind::count;
+    if (widestRegisters() == VectorRegisters::narrow) {
+        MESSAGE("skipped: there are no registers of 64 bytes");
+        return;
+    }
+    for (const PolynomialBasis basis : allBases)
+        for (const OutputCount outputs : {OutputCount{2, 2}, OutputCount{1, 8}, OutputCount{0, 10}})
+            for (const double coupling : {0.0, 0.3}) {
+                SparsePolynomial polynomial = somePolynomial(basis, outputs, 5);
+                polynomial.scaling.coupling = {coupling, coupling};
+                const PolynomialEvaluator<T> narrow(polynomial, VectorRegisters::narrow);
+                const PolynomialEvaluator<T> wide(polynomial, VectorRegisters::wide);
+                const BatchInput<T, count> batch = batchOf<T, count>(someInputs(count));
+                const auto same = [&](const Batch<T, count>& a, const Batch<T, count>& b) {
+                    return std::memcmp(a.data(), b.data(), count * sizeof(T)) == 0;
+                };
+                const auto values = narrow.values(batch), wideValues = wide.values(batch);
+                const auto some = narrow.evaluateBySensor(batch);
+                const auto wideSome = wide.evaluateBySensor(batch);
+                const auto all = narrow.evaluate(batch), wideAll = wide.evaluate(batch);
+                for (std::size_t o = 0; o < static_cast<std::size_t>(outputs.total()); ++o) {
+                    CHECK(same(values[o], wideValues[o]));
+                    CHECK(same(some.values[o], wideSome.values[o]));
+                    CHECK(same(all.values[o], wideAll.values[o]));
+                }
+                for (std::size_t o = 0; o < static_cast<std::size_t>(2 * outputs.vectors); ++o) {
+                    for (std::size_t j = 0; j < 2; ++j)
+                        CHECK(same(some.bySensor[o][j], wideSome.bySensor[o][j]));
+                    for (std::size_t j = 0; j < 4; ++j)
+                        CHECK(same(all.jacobian[o][j], wideAll.jacobian[o][j]));
+                }
+            }
 }
 
 TEST_CASE("PolynomialEvaluator: float loses less than a tenth of a small fit's error") {

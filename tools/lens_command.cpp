@@ -220,11 +220,16 @@ void addTrade(CLI::App& lens, Chosen& chosen) {
     addChoices(trade, "--basis", "Default: by the lens' symmetry, and cartesian", polynomialBases(),
                command->bases);
     addChoices(trade, "--form", "Default: two-point,sensor-state", fitForms(), command->forms);
-    trade->add_flag("--slides", command->slides,
-                    "The published accuracy table, measured again, ours beside it");
     trade->add_option("--csv", command->csv, "Also write the table here")->type_name("FILE");
     trade->add_option("--plot", command->plot, "Also draw error against cost, as SVG")
         ->type_name("FILE");
+    // The published table has its own lenses, settings and fits.
+    const std::vector<CLI::Option*> ownTableOnly = trade->get_options(
+        [trade](const CLI::Option* option) { return option != trade->get_help_ptr(); });
+    CLI::Option* slides =
+        trade->add_flag("--slides", command->slides,
+                        "The published accuracy table, measured again, ours beside it");
+    for (CLI::Option* option : ownTableOnly) slides->excludes(option);
     addJson(trade, command->asJson);
     runWhenChosen(trade, chosen, command, runLensTrade);
 }

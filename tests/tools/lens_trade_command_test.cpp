@@ -35,3 +35,15 @@ TEST_CASE("Lens command: trade without a lens, or with a basis that does not sui
     CHECK(run("lens trade anamorphic-80x90mm --basis axial").code == 64);
     CHECK(run("lens trade double-gauss-100mm --form other").code == 64);
 }
+
+TEST_CASE("Lens command: trade's published table has no lenses, settings or files of the user's") {
+    for (const std::string other :
+         {"tessar-100mm", "--zoom x", "--sensor 36,24", "--focus 2", "--f-number 8", "--terms 8",
+          "--degree 5", "--basis axial", "--form two-point", "--csv t.csv", "--plot t.svg"}) {
+        CAPTURE(other);
+        const Outcome outcome = run("lens trade --slides " + other, "timeout 5");
+        CHECK(outcome.code == 64);
+        CHECK(contains(outcome.output, "excludes --slides"));
+    }
+    CHECK(run("lens trade --slides --help").code == 0);
+}

@@ -10,6 +10,7 @@
 #include "lens/ray_path.h"
 #include "tools/lens_info.h"
 #include "tools/lens_outline.h"
+#include "tools/svg_plot.h"
 #include "tools/write_file.h"
 
 namespace etendue {
@@ -149,12 +150,7 @@ void drawPanel(Svg& svg, const Panel& panel, const TracedLens& lens, const Panel
 }
 
 void drawScaleBar(Svg& svg, Eigen::Vector2d rightEnd, double scale) {
-    double length = std::pow(10.0, std::floor(std::log10(160.0 / scale)));
-    for (const double factor : {5.0, 2.0})
-        if (factor * length * scale <= 160.0) {
-            length *= factor;
-            break;
-        }
+    const double length = niceBelow(160.0 / scale);
     const Eigen::Vector2d leftEnd = rightEnd - Eigen::Vector2d(length * scale, 0.0);
     svg.line(leftEnd, rightEnd, "ink");
     for (const Eigen::Vector2d& end : {leftEnd, rightEnd})

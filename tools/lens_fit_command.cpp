@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lens/fit_cache.h"
+#include "lens/lens_trade.h"
 #include "tools/progress.h"
 #include "tools/write_file.h"
 
@@ -20,27 +21,13 @@ ErrorSummary scaled(const ErrorSummary& summary, double factor) {
     return {factor * summary.rms, factor * summary.percentile999, factor * summary.most};
 }
 
-const char* formName(FitForm form) {
-    return form == FitForm::twoPoint ? "two-point" : "sensor-state";
-}
-
 FitSettings settingsFor(const Prescription& prescription, const FitOptions& options) {
-    const bool hasAxis = !isAnamorphic(prescription);
     FitSettings settings;
     settings.form = options.form;
     settings.terms = options.terms;
     settings.degree = options.degree;
-    settings.basis =
-        options.basis.value_or(hasAxis ? PolynomialBasis::axial : PolynomialBasis::twoPlane);
-    if (settings.basis == PolynomialBasis::axial && !hasAxis)
-        throw InputError("--basis axial: " + prescription.name + " is not symmetric about an axis",
-                         ExitCode::usage);
+    settings.basis = basisFor(prescription, options.basis);
     return settings;
-}
-
-int rayCost(const LensFit& fit) {
-    const bool hasAperture = fit.settings.form == FitForm::sensorState;
-    return multiplyAdds(fit.exit) + (hasAperture ? multiplyAdds(fit.aperture) : 0);
 }
 
 double share(std::int64_t part, std::int64_t whole) {
@@ -89,6 +76,18 @@ void printReport(const Prescription& prescription, const ObtainedFit& obtained) 
 
 }  // namespace
 
+const char* formName(FitForm form) {
+    return form == FitForm::twoPoint ? "two-point" : "sensor-state";
+}
+
+PolynomialBasis basisFor(const Prescription& prescription, std::optional<PolynomialBasis> wanted) {
+    const bool hasAxis = !isAnamorphic(prescription);
+    if (wanted == PolynomialBasis::axial && !hasAxis)
+        throw InputError("--basis axial: " + prescription.name + " is not symmetric about an axis",
+                         ExitCode::usage);
+    return wanted.value_or(hasAxis ? PolynomialBasis::axial : PolynomialBasis::twoPlane);
+}
+
 std::string describe(const FitSettings& settings) {
     const std::string terms = settings.terms == allTerms ? std::string("all terms")
                                                          : fmt::format("{} terms", settings.terms);
@@ -107,7 +106,7 @@ std::string describe(const FitDomain& domain) {
 }
 
 std::string describeCost(const LensFit& fit) {
-    return fmt::format("{} multiply-adds for the ray, {} for the rims", rayCost(fit),
+    return fmt::format("{} multiply-adds for the ray, {} for the rims", rayMultiplyAdds(fit),
                        multiplyAdds(fit.clip.squares));
 }
 
@@ -135,7 +134,7 @@ Json jsonOf(const LensFit& fit) {
          {"basis", std::string(basisName(fit.settings.basis))},
          {"terms", fit.settings.terms},
          {"degree", fit.settings.degree},
-         {"multiply_adds", rayCost(fit)},
+         {"multiply_adds", rayMultiplyAdds(fit)},
          {"rim_multiply_adds", multiplyAdds(fit.clip.squares)},
          {"domain", jsonOf(fit.domain)},
          {"training", Json::object({{"drawn", fit.training.drawn},

@@ -23,6 +23,13 @@ struct LensFitCommand {
     bool asJson = false;
 };
 
+/// As --form names it.
+const char* formName(FitForm form);
+
+/// The basis that is wanted, or that of the lens' symmetry. Throws InputError (usage) where the one
+/// wanted does not suit the lens.
+PolynomialBasis basisFor(const Prescription& prescription, std::optional<PolynomialBasis> wanted);
+
 /// A fit, and how it was come by.
 struct ObtainedFit {
     LensFit fit;

@@ -107,13 +107,6 @@ void drawCells(Svg& svg, const Plot& plot, const ReportCurves& curves, const Plo
         }
 }
 
-/// A length of 1, 2 or 5 times a power of ten, µm.
-double niceLength(double micrometre) {
-    const double power = std::pow(10.0, std::floor(std::log10(micrometre)));
-    const double ratio = micrometre / power;
-    return power * (ratio >= 5.0 ? 5.0 : ratio >= 2.0 ? 2.0 : 1.0);
-}
-
 }  // namespace
 
 Svg spotFigure(const ReportSpot& spot) {
@@ -154,7 +147,7 @@ Svg spotFigure(const ReportSpot& spot) {
             svg.dots(places, fmt::format("c{}", lineColour(line)));
         }
     }
-    const double bar = niceLength(micrometres * 0.8 * reach) / micrometres;
+    const double bar = niceBelow(micrometres * 0.8 * reach) / micrometres;
     const Eigen::Vector2d foot(0.0, top + box + 12.0);
     svg.line(foot, foot + Eigen::Vector2d(bar * scale, 0.0), "ink");
     svg.text(foot + Eigen::Vector2d(bar * scale + 8.0, 4.0),

@@ -7,6 +7,7 @@
 
 #include "lens/fit_domain.h"
 #include "tools/json.h"
+#include "tools/lens_fit_command.h"
 #include "tools/lens_slides_table.h"
 #include "tools/progress.h"
 #include "tools/svg_plot.h"
@@ -21,10 +22,6 @@ struct LensTrade {
     std::string lens;
     TradeRow row;
 };
-
-const char* formName(FitForm form) {
-    return form == FitForm::twoPoint ? "two-point" : "sensor-state";
-}
 
 double perCent(int part, int whole) { return whole > 0 ? 100.0 * part / whole : 0.0; }
 
@@ -160,15 +157,9 @@ private:
 
 std::vector<PolynomialBasis> basesFor(const LensTradeCommand& command,
                                       const Prescription& prescription) {
-    const bool hasAxis = !isAnamorphic(prescription);
-    for (const PolynomialBasis basis : command.bases)
-        if (basis == PolynomialBasis::axial && !hasAxis)
-            throw InputError(
-                "--basis axial: " + prescription.name + " is not symmetric about an axis",
-                ExitCode::usage);
-    if (!command.bases.empty()) return command.bases;
-    return {!hasAxis ? PolynomialBasis::twoPlane : PolynomialBasis::axial,
-            PolynomialBasis::cartesian};
+    if (command.bases.empty()) return {basisFor(prescription, {}), PolynomialBasis::cartesian};
+    for (const PolynomialBasis basis : command.bases) basisFor(prescription, basis);
+    return command.bases;
 }
 
 std::vector<LensTrade> measureAll(const LensTradeCommand& command) {

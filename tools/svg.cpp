@@ -57,7 +57,6 @@ svg .frame{fill:none;stroke:#cbd2d9}
 svg .dots{stroke-width:2}
 svg .dashed{stroke-dasharray:5 4}
 svg .glass{fill:#3f86c7;stroke:none}
-svg .metal{fill:#1f2933;stroke:none}
 svg .paper{fill:#fff;stroke:none}
 svg .c0{stroke:#0b69b7}svg .f0{fill:#0b69b7;stroke:none}
 svg .c1{stroke:#c2540a}svg .f1{fill:#c2540a;stroke:none}

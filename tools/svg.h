@@ -12,9 +12,8 @@
 
 namespace etendue {
 
-/// Classes: ink, faint, rule, grid (lines); fill-ink, muted (texts); glass, metal, paper (areas);
-/// c0 … c5 (lines of a series), f0 … f5 (the same colours to fill); frame, dashed, thin, heavy;
-/// bold.
+/// Classes: ink, faint, rule, grid (lines); muted, bold (texts); glass, paper (areas); frame;
+/// c0 … c5 (lines of a series), f0 … f5 (the same colours to fill); dashed, thin, heavy (lines).
 std::string_view svgStyle();
 constexpr int svgSeriesColours = 6;
 

@@ -12,15 +12,14 @@ namespace {
 constexpr double left = 62.0, right = 16.0, top = 34.0, bottom = 44.0;
 constexpr double legendRow = 17.0;
 
-/// The largest of 1, 2, 5 times a power of ten that is not above `value`.
+}  // namespace
+
 double niceBelow(double value) {
     const double power = std::pow(10.0, std::floor(std::log10(value)));
     for (const double factor : {5.0, 2.0})
         if (factor * power <= value * (1.0 + 1e-9)) return factor * power;
     return power;
 }
-
-}  // namespace
 
 PlotAxis axisFor(std::string label, std::span<const double> values, AxisScale scale,
                  bool withZero) {

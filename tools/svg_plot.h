@@ -5,6 +5,10 @@
 
 namespace etendue {
 
+/// The largest of 1, 2, 5 times a power of ten that is not above `value`, which is positive; for
+/// ticks and scale bars.
+double niceBelow(double value);
+
 enum class AxisScale { linear, logarithmic };
 
 struct PlotAxis {

@@ -39,6 +39,16 @@ TEST_CASE("tickValues: ticks are round, inside and few") {
         }
 }
 
+TEST_CASE("niceBelow: a length is 1, 2 or 5 of its decade, and not above what there is room for") {
+    for (const double decade : {1e-6, 1.0, 1e4}) {
+        CHECK(niceBelow(1.99 * decade) == doctest::Approx(decade));
+        CHECK(niceBelow(2.0 * decade) == doctest::Approx(2.0 * decade));
+        CHECK(niceBelow(4.99 * decade) == doctest::Approx(2.0 * decade));
+        CHECK(niceBelow(5.0 * decade) == doctest::Approx(5.0 * decade));
+        CHECK(niceBelow(9.99 * decade) == doctest::Approx(5.0 * decade));
+    }
+}
+
 TEST_CASE("axisFor: it shows every value that can be shown") {
     const std::vector<double> values{0.003, std::numeric_limits<double>::infinity(), -0.2, 4.7};
     const PlotAxis linear = axisFor("x", values);

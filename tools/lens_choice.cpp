@@ -59,6 +59,12 @@ DomainRequest requestOf(const LensChoice& choice) {
     return request;
 }
 
+std::string titleOf(const Prescription& prescription) {
+    const std::string& position = prescription.zoomPosition;
+    return position.empty() ? prescription.name
+                            : fmt::format("{}, at {}", prescription.name, position);
+}
+
 std::string describe(const LensChoice& choice) {
     const std::string opening =
         choice.fNumber ? fmt::format("f/{:g}", *choice.fNumber) : std::string("wide open");

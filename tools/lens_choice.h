@@ -27,6 +27,9 @@ Prescription loadPrescription(const LensChoice& choice);
 LensSettings settingsOf(const LensChoice& choice);
 DomainRequest requestOf(const LensChoice& choice);
 
+/// "Zoom, 57 to 143 mm f/2.8, at 57 mm": the lens' name, and its zoom position if it has any.
+std::string titleOf(const Prescription& prescription);
+
 /// "f/2.8, focus at 1.5 m".
 std::string describe(const LensChoice& choice);
 

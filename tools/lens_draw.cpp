@@ -181,11 +181,7 @@ void drawLegend(Svg& svg, Eigen::Vector2d at, const LensDrawCommand& command,
 }
 
 void drawTitle(Svg& svg, const Prescription& prescription) {
-    svg.text({margin, 26.0},
-             prescription.zoomPosition.empty()
-                 ? prescription.name
-                 : fmt::format("{}, at {}", prescription.name, prescription.zoomPosition),
-             TextAnchor::start, "bold");
+    svg.text({margin, 26.0}, titleOf(prescription), TextAnchor::start, "bold");
     svg.text({margin, 44.0}, prescription.source, TextAnchor::start, "muted");
 }
 

@@ -48,7 +48,7 @@ Json jsonOf(const FitDomain& domain) {
 void printReport(const Prescription& prescription, const ObtainedFit& obtained) {
     const LensFit& fit = obtained.fit;
     const RayCounts& drawn = fit.training;
-    fmt::print("{}\n{}\n\n", prescription.name, prescription.source);
+    fmt::print("{}\n{}\n\n", titleOf(prescription), prescription.source);
     fmt::print("  fit       {}\n", describe(fit.settings));
     fmt::print("  cost      {}\n", describeCost(fit));
     fmt::print("  domain    {}\n", describe(fit.domain));
@@ -180,6 +180,7 @@ ExitCode runLensFit(const LensFitCommand& command) {
     if (command.asJson) {
         Json json = jsonOf(obtained.fit);
         json.add("lens", prescription.name);
+        json.add("zoom_position", prescription.zoomPosition);
         json.add("seconds", obtained.seconds);
         json.add("from_cache", obtained.isFromCache);
         json.add("file", (command.output.empty() ? obtained.cacheFile : command.output).string());

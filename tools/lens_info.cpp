@@ -200,8 +200,7 @@ ExitCode runLensInfo(const LensInfoCommand& command) {
         return ExitCode::success;
     }
     const Prescription& p = info.prescription;
-    fmt::print("{}{}\n{}\n\n", p.name, p.zoomPosition.empty() ? "" : ", at " + p.zoomPosition,
-               p.source);
+    fmt::print("{}\n{}\n\n", titleOf(p), p.source);
     for (const auto& [label, value] : infoRows(info)) fmt::print("  {:<22}{}\n", label, value);
     fmt::print("\n{}", alignedTable(surfaceTable(p), "rlrrrrrrrl"));
     if (!p.notes.empty()) fmt::print("\n{}\n", p.notes);

@@ -256,8 +256,7 @@ std::string connect(const LensReport& report) {
 
 std::string reportPage(const LensReport& report, const std::string& madeBy) {
     const Prescription& p = report.info.prescription;
-    const std::string name =
-        p.zoomPosition.empty() ? p.name : fmt::format("{}, at {}", p.name, p.zoomPosition);
+    const std::string name = titleOf(p);
     std::string html = fmt::format(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"

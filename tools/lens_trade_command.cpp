@@ -19,9 +19,22 @@ namespace etendue {
 namespace {
 
 struct LensTrade {
-    std::string lens;
+    std::string lens;          // its file's name
+    std::string zoomPosition;  // empty for a lens that does not zoom
     TradeRow row;
 };
+
+std::string labelOf(const std::string& lens, const std::string& zoomPosition) {
+    return zoomPosition.empty() ? lens : fmt::format("{} at {}", lens, zoomPosition);
+}
+
+/// A cell of a CSV file (RFC 4180).
+std::string csvCell(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
 
 double perCent(int part, int whole) { return whole > 0 ? 100.0 * part / whole : 0.0; }
 
@@ -68,8 +81,8 @@ std::string tableText(const std::vector<LensTrade>& trades) {
     for (const Column& column : columns()) rows.front().push_back(column.heading);
     for (const LensTrade& trade : trades) {
         const FitSettings& settings = trade.row.settings;
-        rows.push_back(
-            {trade.lens, formName(settings.form), std::string(basisName(settings.basis))});
+        rows.push_back({labelOf(trade.lens, trade.zoomPosition), formName(settings.form),
+                        std::string(basisName(settings.basis))});
         for (const Column& column : columns())
             rows.back().push_back(
                 fmt::format(fmt::runtime(column.format), column.value(trade.row)));
@@ -78,13 +91,13 @@ std::string tableText(const std::vector<LensTrade>& trades) {
 }
 
 std::string csvText(const std::vector<LensTrade>& trades) {
-    std::string text = "lens,form,basis";
+    std::string text = "lens,zoom_position,form,basis";
     for (const Column& column : columns()) text += fmt::format(",{}", column.key);
     text += "\n";
     for (const LensTrade& trade : trades) {
         const FitSettings& settings = trade.row.settings;
-        text +=
-            fmt::format("{},{},{}", trade.lens, formName(settings.form), basisName(settings.basis));
+        text += fmt::format("{},{},{},{}", csvCell(trade.lens), csvCell(trade.zoomPosition),
+                            formName(settings.form), basisName(settings.basis));
         for (const Column& column : columns()) text += fmt::format(",{}", column.value(trade.row));
         text += "\n";
     }
@@ -96,6 +109,7 @@ Json jsonOf(const std::vector<LensTrade>& trades) {
     for (const LensTrade& trade : trades) {
         const FitSettings& settings = trade.row.settings;
         Json row = Json::object({{"lens", trade.lens},
+                                 {"zoom_position", trade.zoomPosition},
                                  {"form", formName(settings.form)},
                                  {"basis", std::string(basisName(settings.basis))}});
         for (const Column& column : columns()) row.add(column.key, column.value(trade.row));
@@ -114,8 +128,8 @@ std::string plotText(const std::vector<LensTrade>& trades) {
         costs.push_back(cost);
         errors.push_back(error);
         const std::string name =
-            fmt::format("{}, {}, {}, degree {}", trade.lens, formName(settings.form),
-                        basisName(settings.basis), settings.degree);
+            fmt::format("{}, {}, {}, degree {}", labelOf(trade.lens, trade.zoomPosition),
+                        formName(settings.form), basisName(settings.basis), settings.degree);
         if (curves.empty() || curves.back().name != name) {
             const int colour = static_cast<int>(curves.size()) % svgSeriesColours;
             const bool isDashed = curves.size() >= static_cast<std::size_t>(svgSeriesColours);
@@ -176,6 +190,7 @@ std::vector<LensTrade> measureAll(const LensTradeCommand& command) {
     std::vector<LensTrade> trades;
     for (std::size_t i = 0; i < prescriptions.size(); ++i) {
         const std::string name = findLensFile(command.lenses[i]).stem().string();
+        const std::string& zoomPosition = prescriptions[i].zoomPosition;
         const FitDomain domain = fitDomain(prescriptions[i], requestOf(command.choice));
         for (const FitForm form : command.forms)
             for (const PolynomialBasis basis : basesFor(command, prescriptions[i]))
@@ -186,14 +201,15 @@ std::vector<LensTrade> measureAll(const LensTradeCommand& command) {
                         settings.basis = basis;
                         settings.degree = degree;
                         settings.terms = terms;
-                        progress.begin(fmt::format("{}, {}, {}, degree {}, {} terms", name,
-                                                   formName(form), basisName(basis), degree,
-                                                   terms));
+                        progress.begin(fmt::format("{}, {}, {}, degree {}, {} terms",
+                                                   labelOf(name, zoomPosition), formName(form),
+                                                   basisName(basis), degree, terms));
                         const auto update = [&](double share, std::string_view stage) {
                             progress.update(share, stage);
                         };
                         trades.push_back(
-                            {name, measureTrade(prescriptions[i], domain, settings, update)});
+                            {name, zoomPosition,
+                             measureTrade(prescriptions[i], domain, settings, update)});
                     }
     }
     return trades;

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "tests/lens/prescriptions.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/tools/command_outcome.h"
 #include "tools/text_table.h"
@@ -22,12 +23,38 @@ TEST_CASE("Lens command: trade prints a row for every fit, and writes them as CS
     CHECK(contains(outcome.output, "mul-adds"));
     const std::string rows = readFile(csv);
     CHECK(std::ranges::count(rows, '\n') == 5);
-    CHECK(rows.starts_with("lens,form,basis,terms,degree,multiply_adds,direction_mrad_rms,"));
-    CHECK(contains(rows, "tessar-100mm,two-point,axial,6,3,"));
+    CHECK(rows.starts_with(
+        "lens,zoom_position,form,basis,terms,degree,multiply_adds,direction_mrad_rms,"));
+    CHECK(contains(rows, "tessar-100mm,,two-point,axial,6,3,"));
     CHECK(contains(readFile(svg), "</svg>"));
     const Outcome json = run(
         "lens trade double-gauss-100mm --terms 4 --degree 3 --basis axial --form two-point --json");
     CHECK(contains(json.output, "\"connect_lost_percent\": 0"));
+}
+
+TEST_CASE("Lens command: a fit and a trade of a zoom lens say at which position") {
+    const TemporaryFolder folder;
+    const std::string cache = "XDG_CACHE_HOME=" + folder.path().string();
+    const std::string at = "zoom-57-143mm --zoom '143 mm' --terms 4 --degree 3 ";
+    CHECK(contains(run("lens fit " + at, cache).output, "Zoom, 57 to 143 mm f/2.8, at 143 mm\n"));
+    CHECK(contains(run("lens fit --json " + at, cache).output, "\"zoom_position\": \"143 mm\""));
+    const std::string csv = (folder / "t.csv").string(), svg = (folder / "t.svg").string();
+    const std::string trade =
+        "lens trade " + at + "--basis axial --form two-point --csv " + csv + " --plot " + svg;
+    CHECK(contains(run(trade).output, "\n  zoom-57-143mm at 143 mm  two-point  axial"));
+    CHECK(contains(readFile(csv), "\nzoom-57-143mm,143 mm,two-point,axial,4,3,"));
+    CHECK(contains(readFile(svg), ">zoom-57-143mm at 143 mm, two-point, axial, degree 3<"));
+    CHECK(contains(run(trade + " --json").output, "\"zoom_position\": \"143 mm\""));
+    // A comma in a name is no end of a cell.
+    const std::filesystem::path comma = folder / "a,b.toml";
+    std::filesystem::copy_file(lensFile("tessar-100mm.toml"), comma);
+    CHECK(run("lens trade '" + comma.string() +
+              "' --terms 4 --degree 3 --basis axial --form two-point --csv " + csv)
+              .code == 0);
+    CHECK(contains(readFile(csv), "\n\"a,b\",,two-point,axial,4,3,"));
+    // The first that it lists, where none is named.
+    CHECK(
+        contains(run("lens fit zoom-57-143mm --terms 4 --degree 3", cache).output, ", at 57 mm\n"));
 }
 
 TEST_CASE("Lens command: trade without a lens, or with a basis that does not suit it, is refused") {

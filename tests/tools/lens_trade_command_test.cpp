@@ -29,7 +29,7 @@ TEST_CASE("Lens command: trade prints a row for every fit, and writes them as CS
     CHECK(contains(readFile(svg), "</svg>"));
     const Outcome json = run(
         "lens trade double-gauss-100mm --terms 4 --degree 3 --basis axial --form two-point --json");
-    CHECK(contains(json.output, "\"connect_lost_percent\": 0"));
+    CHECK(contains(json.output, "\"connect_lost_percent\": 0,"));
 }
 
 TEST_CASE("Lens command: a fit and a trade of a zoom lens say at which position") {

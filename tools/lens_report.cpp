@@ -104,10 +104,13 @@ ReportCurves makeCurves(const TracedLens& exact, const PolynomialLens& fitted,
                         {},
                         {},
                         {},
+                        {},
                         {}};
     for (int i = 0; i <= steps; ++i) {
         const double share = static_cast<double>(i) / steps;
         curves.heightsMm.push_back(share * axis.brightMm);
+        curves.fieldCurvature.push_back(
+            pencilFocus(exact, axis.along, curves.heightsMm.back(), focusDistanceMm));
         curves.apertureShares.push_back(std::max(share, 1e-2));  // close to the paraxial ray
         for (std::size_t line = 0; line < reportLinesNm.size(); ++line) {
             const double wavelengthNm = reportLinesNm[line];

@@ -6,6 +6,7 @@
 #include "lens/chromatic.h"
 #include "lens/connect_survey.h"
 #include "lens/distortion.h"
+#include "lens/field_curvature.h"
 #include "lens/fit_map.h"
 #include "lens/illumination.h"
 #include "lens/spot_diagram.h"
@@ -53,8 +54,9 @@ struct ReportCurves {
     ReportAxis axis;
     std::vector<DistortionPoint> distortion;
     std::vector<Illumination> illumination;
-    std::vector<double> heightsMm;                    // of lateral colour
+    std::vector<double> heightsMm;                    // of lateral colour and field curvature
     std::array<std::vector<double>, 3> lateralMm;     // for each of reportLinesNm
+    std::vector<PencilFocus> fieldCurvature;          // at the d line
     std::vector<double> apertureShares;               // of the focus shift
     std::array<std::vector<double>, 3> focusShiftMm;  // likewise
     FitMap map;                                       // at the d line
@@ -83,6 +85,7 @@ Svg distortionFigure(const LensReport& report);
 Svg illuminationFigure(const ReportCurves& curves);
 Svg lateralColourFigure(const ReportCurves& curves);
 Svg focusShiftFigure(const ReportCurves& curves);
+Svg fieldCurvatureFigure(const ReportCurves& curves);
 Svg paraxialFocusFigure(const LensReport& report);
 Svg fitMapFigure(const ReportCurves& curves, double apertureRadiusMm);
 Svg iterationsFigure(const LensReport& report);

@@ -218,6 +218,16 @@ Svg focusShiftFigure(const ReportCurves& curves) {
                   "focus in front of the sensor, mm", std::move(series));
 }
 
+Svg fieldCurvatureFigure(const ReportCurves& curves) {
+    std::vector<PlotSeries> series{{"tangential", {}, 0}, {"sagittal", {}, 1}};
+    for (std::size_t i = 0; i < curves.heightsMm.size(); ++i) {
+        series[0].points.emplace_back(curves.heightsMm[i], curves.fieldCurvature[i].tangentialMm);
+        series[1].points.emplace_back(curves.heightsMm[i], curves.fieldCurvature[i].sagittalMm);
+    }
+    return plotOf(ofAxis("Field curvature", curves.axis), heightAxis(curves.axis),
+                  "focus in front of the sensor, mm", std::move(series));
+}
+
 Svg paraxialFocusFigure(const LensReport& report) {
     const auto& points = report.paraxialFocusMm;
     return plotOf("Axial colour", {"wavelength, nm", points.front().x(), points.back().x()},

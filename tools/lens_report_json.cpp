@@ -53,6 +53,7 @@ Json jsonOf(const ReportSpot& spot) {
 Json jsonOf(const ReportCurves& curves) {
     const auto& d = curves.distortion;
     const auto& i = curves.illumination;
+    const auto& f = curves.fieldCurvature;
     Json lines = Json::array();
     for (std::size_t line = 0; line < reportLinesNm.size(); ++line)
         lines.add(Json::object({{"wavelength_nm", reportLinesNm[line]},
@@ -76,6 +77,11 @@ Json jsonOf(const ReportCurves& curves) {
          {"colour", Json::object({{"height_mm", Json::numbers(curves.heightsMm)},
                                   {"aperture_share", Json::numbers(curves.apertureShares)},
                                   {"lines", std::move(lines)}})},
+         {"field_curvature",
+          Json::object(
+              {{"height_mm", Json::numbers(curves.heightsMm)},
+               {"tangential_focus_mm", column(f, [](const auto& p) { return p.tangentialMm; })},
+               {"sagittal_focus_mm", column(f, [](const auto& p) { return p.sagittalMm; })}})},
          {"fit_error",
           Json::object({{"height_mm", Json::numbers(curves.map.heightsMm)},
                         {"aperture_mm", Json::numbers(curves.map.aperturesMm)},

@@ -186,8 +186,13 @@ std::string colour(const LensReport& report) {
     std::string figures;
     for (const ReportCurves& curves : report.curves)
         figures += figure(lateralColourFigure(curves), "Lateral colour") +
-                   figure(focusShiftFigure(curves), "Longitudinal aberration");
+                   figure(focusShiftFigure(curves), "Longitudinal aberration") +
+                   figure(fieldCurvatureFigure(curves), "Field curvature");
     return heading("Colour and focus") +
+           paragraph(
+               "Field curvature is where thin pencils about the chief ray are sharp at the d line: "
+               "tangential, of rays that differ along the field; sagittal, across it. What is "
+               "between them is astigmatism.") +
            grid(figures + figure(paraxialFocusFigure(report), "Axial colour"));
 }
 

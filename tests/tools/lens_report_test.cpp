@@ -54,9 +54,9 @@ TEST_CASE("Lens report: the page is whole, alone and without numbers that are no
     CHECK(countOf(page, "src=") == 0);
     CHECK(countOf(page, ">nan") + countOf(page, " nan") + countOf(page, "\"nan") == 0);
     CHECK(contains(page, "etendue lens report tessar-100mm --terms 16 --degree 7 -o "));
-    for (const char* key :
-         {"\"spots\"", "\"opencv_pinhole\"", "\"opencv_fisheye\"", "\"vignetting\"",
-          "\"direction_mrad_row_by_row\"", "\"two_step\"", "\"across_mm\"", "\"paraxial_focus\""})
+    for (const char* key : {"\"spots\"", "\"opencv_pinhole\"", "\"opencv_fisheye\"",
+                            "\"vignetting\"", "\"direction_mrad_row_by_row\"", "\"two_step\"",
+                            "\"across_mm\"", "\"paraxial_focus\"", "\"tangential_focus_mm\""})
         CHECK(contains(json, key));
     CHECK(countOf(json, "nan") == 0);
 }
@@ -79,6 +79,14 @@ TEST_CASE(
     CHECK(axis.edgeMm == doctest::Approx(std::hypot(18.0, 12.0)));
     CHECK(axis.chiefMm == doctest::Approx(axis.edgeMm));
     CHECK(report.newton.back().highMm == doctest::Approx(axis.edgeMm));
+    // Where rays through the middle of the stop are sharp on the axis, the pencils are.
+    const ReportCurves& curves = report.curves.front();
+    REQUIRE(curves.fieldCurvature.size() == curves.heightsMm.size());
+    const double paraxial = curves.focusShiftMm[1].front();
+    CHECK(curves.fieldCurvature.front().tangentialMm ==
+          doctest::Approx(paraxial).scale(1.0).epsilon(5e-4));  // as "focusShiftMm: close to…"
+    CHECK(curves.fieldCurvature.back().tangentialMm !=
+          doctest::Approx(curves.fieldCurvature.back().sagittalMm));
 }
 
 TEST_CASE("Lens report: an anamorphic lens is looked at in both of its planes") {

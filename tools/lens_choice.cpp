@@ -65,9 +65,9 @@ std::string titleOf(const Prescription& prescription) {
                             : fmt::format("{}, at {}", prescription.name, position);
 }
 
-std::string describe(const LensChoice& choice) {
+std::string describe(const LensChoice& choice, double fNumber) {
     const std::string opening =
-        choice.fNumber ? fmt::format("f/{:g}", *choice.fNumber) : std::string("wide open");
+        fmt::format("f/{:.2f}{}", fNumber, choice.fNumber ? "" : " wide open");
     const std::string focus = std::isinf(choice.focusMetres)
                                   ? std::string("focus at infinity")
                                   : fmt::format("focus at {:g} m", choice.focusMetres);

@@ -30,7 +30,8 @@ DomainRequest requestOf(const LensChoice& choice);
 /// "Zoom, 57 to 143 mm f/2.8, at 57 mm": the lens' name, and its zoom position if it has any.
 std::string titleOf(const Prescription& prescription);
 
-/// "f/2.8, focus at 1.5 m".
-std::string describe(const LensChoice& choice);
+/// "f/4.00, focus at 1.5 m", "f/2.81 wide open, focus at infinity". `fNumber` is the lens' as it is
+/// set.
+std::string describe(const LensChoice& choice, double fNumber);
 
 }  // namespace etendue

@@ -186,11 +186,13 @@ void drawTitle(Svg& svg, const Prescription& prescription) {
 }
 
 void drawSetting(Svg& svg, double y, const LensDrawCommand& command, const TracedLens& lens) {
+    const double fNumber = fNumberOf(paraxialData(lens.system()), widestAxialBeam(lens.system()));
     svg.text(
         {margin, y},
         fmt::format("f = {:.2f} mm, {}, sensor {:g} × {:g} mm; rays traced exactly at {:.0f} nm",
-                    lens.focalLengthMm(), describe(command.choice), command.choice.sensorMm[0],
-                    command.choice.sensorMm[1], fmt::join(command.wavelengthsNm, ", ")),
+                    lens.focalLengthMm(), describe(command.choice, fNumber),
+                    command.choice.sensorMm[0], command.choice.sensorMm[1],
+                    fmt::join(command.wavelengthsNm, ", ")),
         TextAnchor::start, "muted");
 }
 

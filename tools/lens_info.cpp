@@ -99,6 +99,11 @@ std::string remarks(const Surface& surface) {
 
 }  // namespace
 
+double fNumberOf(const ParaxialData& paraxial, const AxialBeam& beam) {
+    return 0.5 * std::sqrt(paraxial.x.focalLengthMm / beam.radiusXMm * paraxial.y.focalLengthMm /
+                           beam.radiusYMm);
+}
+
 LensInfo lensInfo(const LensChoice& choice) {
     const Prescription prescription = loadPrescription(choice);
     const auto lens = makeTracedLens(prescription, settingsOf(choice));
@@ -112,8 +117,7 @@ LensInfo lensInfo(const LensChoice& choice) {
                   {choice.sensorMm[0], choice.sensorMm[1]},
                   fieldOfView(*lens, choice.sensorMm[0], choice.sensorMm[1]),
                   imageCircleRadiusMm(*lens)};
-    info.fNumber = 0.5 * std::sqrt(info.paraxial.x.focalLengthMm / info.beam.radiusXMm *
-                                   info.paraxial.y.focalLengthMm / info.beam.radiusYMm);
+    info.fNumber = fNumberOf(info.paraxial, info.beam);
     return info;
 }
 

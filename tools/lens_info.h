@@ -19,12 +19,15 @@ struct LensInfo {
     ParaxialData paraxial;  // at the d line
     double stopRadiusMm;
     AxialBeam beam;           // through the stop as it is set
-    double fNumber;           // of that beam; geometric mean of x and y
+    double fNumber;           // of that beam
     double sensorDistanceMm;  // behind the last vertex
     Eigen::Vector2d sensorSizeMm;
     FieldOfView field;
     double imageCircleRadiusMm;  // where the illumination falls to 5 % of that on the axis
 };
+/// Of the beam; the geometric mean of x and y.
+double fNumberOf(const ParaxialData& paraxial, const AxialBeam& beam);
+
 LensInfo lensInfo(const LensChoice& choice);
 
 struct InfoRow {

@@ -79,9 +79,12 @@ TEST_CASE("Lens command: draw writes a whole picture with every field") {
     CHECK_FALSE(contains(outcome.output, "\"rays\": 0"));
     const std::string picture = readFile(svg);
     CHECK(contains(picture, "Fisheye with aspheres"));
+    CHECK(contains(picture, "f = 9.71 mm, f/2.11 wide open, focus at infinity, sensor 36 × 24 mm"));
     for (const char* colour : {"\"c0 thin\"", "\"c1 thin\"", "\"c2 thin\"", "\"c3 thin\""})
         CHECK(contains(picture, colour));
     CHECK(picture.ends_with("</svg>\n"));
+    CHECK(run("lens draw tessar-100mm --f-number 8 --focus 3 -o " + svg).code == 0);
+    CHECK(contains(readFile(svg), ", f/8.00, focus at 3 m, "));
     CHECK(run("lens draw tessar-100mm -o " + (folder.path() / "no/x.svg").string()).code == 66);
     CHECK(run("lens draw tessar-100mm --wavelengths 200 -o " + svg).code == 64);
 }

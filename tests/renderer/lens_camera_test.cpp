@@ -57,9 +57,12 @@ TEST_CASE("Scene: a lens of glass, by its polynomials and by its trace, sees the
             for (const LoadedScene* fitted : {&twoPoint, &sensorState}) {
                 const auto ray = fitted->camera->sampleRay(film, u, green);
                 REQUIRE(ray.has_value());
-                // Twelve terms of degree five are off by some hundredths of a milliradian.
-                CHECK(length(ray->direction - exact->direction) <= 3e-4f);
-                CHECK(std::abs(ray->weight - exact->weight) <= 0.01f * exact->weight);
+                // Of 10,000 rays, twelve terms of degree five put the worst off by 0.036 mrad in
+                // the two-point form and 0.044 in the other, its throughput by 0.017 % and 0.043 %
+                // (lens fit --terms 12 --degree 5 --f-number 8 --focus 4). Twice that; floats are
+                // nothing to it.
+                CHECK(length(ray->direction - exact->direction) <= 0.9e-4f);
+                CHECK(std::abs(ray->weight - exact->weight) <= 0.9e-3f * exact->weight);
             }
         }
     // On the axis a uniform field of one reads one.

@@ -79,7 +79,12 @@ TEST_CASE(
     CHECK(axis.edgeMm == doctest::Approx(std::hypot(18.0, 12.0)));
     CHECK(axis.chiefMm == doctest::Approx(axis.edgeMm));
     CHECK(report.newton.back().highMm == doctest::Approx(axis.edgeMm));
-    // Where rays through the middle of the stop are sharp on the axis, the pencils are.
+}
+
+TEST_CASE(
+    "Lens report: field curvature begins on the axis at the focus of the longitudinal curve") {
+    const OwnCache cache;
+    const LensReport report = makeReport(quickReport("tessar-100mm"));
     const ReportCurves& curves = report.curves.front();
     REQUIRE(curves.fieldCurvature.size() == curves.heightsMm.size());
     const double paraxial = curves.focusShiftMm[1].front();

@@ -1,5 +1,7 @@
 #include "config/config.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <fstream>
 
@@ -76,6 +78,27 @@ void Config::merge(const Config& other) {
     mergeInto(std::get<ConfigNode::Table>(merged.value),
               std::get<ConfigNode::Table>(other.root_->value), "");
     root_ = std::make_shared<ConfigNode>(std::move(merged));
+}
+
+void Config::replaceTable(std::string_view name, const Config& other,
+                          const std::vector<std::string>& kept) {
+    const ConfigNode* replacement = std::get<ConfigNode::Table>(other.root_->value).find(name);
+    if (!replacement || !std::holds_alternative<ConfigNode::Table>(replacement->value))
+        other.root().fail("", fmt::format("expected a [{}] table", name));
+    ConfigNode table = *replacement;
+    ConfigNode whole = *root_;
+    auto& entries = std::get<ConfigNode::Table>(whole.value);
+    if (ConfigNode* old = entries.find(name)) {
+        for (const std::string& key : kept) {
+            auto& taken = std::get<ConfigNode::Table>(table.value);
+            const ConfigNode* value = std::get<ConfigNode::Table>(old->value).find(key);
+            if (value && !taken.find(key)) taken.add(key, *value);
+        }
+        *old = std::move(table);
+    } else {
+        entries.add(std::string(name), std::move(table));
+    }
+    root_ = std::make_shared<ConfigNode>(std::move(whole));
 }
 
 ConfigTable Config::root() const { return {root_, ""}; }

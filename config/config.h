@@ -148,6 +148,11 @@ public:
     /// document's own top-level `include` stays behind: whoever merges has followed it already.
     void merge(const Config& other);
 
+    /// Takes the other document's top-level table `name` in place of this one's, of which the keys
+    /// `kept` stay unless the new one has them.
+    void replaceTable(std::string_view name, const Config& other,
+                      const std::vector<std::string>& kept);
+
     ConfigTable root() const;
 
 private:

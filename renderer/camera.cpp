@@ -66,6 +66,11 @@ float perArea(double numerator, double area) {
 
 }  // namespace
 
+Eigen::Vector2d sensorPointMm(const CameraSettings& settings, Vec2 film) {  // (3)
+    return (toEigen(film) - filmCenter(settings)) * (settings.sensorWidthMm / settings.width) +
+           settings.sensorOffsetMm;
+}
+
 Camera::Camera(std::shared_ptr<const LensModel> lens, const CameraSettings& settings)
     : lens_(std::move(lens)),
       settings_(settings),
@@ -75,6 +80,8 @@ Camera::Camera(std::shared_ptr<const LensModel> lens, const CameraSettings& sett
         throw std::invalid_argument("camera: width and height must be positive");
     if (!(settings.sensorWidthMm > 0.0 && std::isfinite(settings.sensorWidthMm)))
         throw std::invalid_argument("camera: the sensor's width must be positive");
+    if (!settings.sensorOffsetMm.allFinite())
+        throw std::invalid_argument("camera: the sensor's offset must be finite");
     if (!isRigid(settings.worldFromLens))
         throw std::invalid_argument("camera: worldFromLens may only rotate and translate");
     const double mean = meanThroughputOnAxis(*lens_);
@@ -87,7 +94,7 @@ Camera::Camera(std::shared_ptr<const LensModel> lens, const CameraSettings& sett
 
 std::optional<CameraRay> Camera::sampleRay(Vec2 film, Vec2 apertureUniform,
                                            const Wavelengths& wavelengths) const {
-    const SensorPoint sensor{(toEigen(film) - filmCenter(settings_)) * pixelMm_};  // (3)
+    const SensorPoint sensor{sensorPointMm(settings_, film)};
     const AperturePoint aperture = lens_->sampleAperture(toEigen(apertureUniform));
     const std::optional<ExitRay> exit = lens_->trace(sensor, aperture, wavelengths.heroNm());
     if (!exit) return {};
@@ -135,7 +142,8 @@ std::optional<Camera::Seen> Camera::see(const Eigen::Vector3d& targetMm, Vec2 ap
     // footprint.
     const std::optional<ExitRay> exit = lens_->trace(*sensor, aperture, wavelengths.heroNm());
     if (!exit) return {};
-    const Eigen::Vector2d film = sensor->mm / pixelMm_ + filmCenter(settings_);  // (3)
+    const Eigen::Vector2d film =
+        (sensor->mm - settings_.sensorOffsetMm) / pixelMm_ + filmCenter(settings_);  // (3)
     const Seen seen{{static_cast<float>(film.x()), static_cast<float>(film.y())}, *exit};
     if (!std::isfinite(seen.film.x) || !std::isfinite(seen.film.y)) return {};
     return seen;

@@ -34,11 +34,15 @@ struct CameraConnection {
 /// Film x, to the right, is the sensor's +x and film y, down, its +y: the lens turns the picture by
 /// 180°, and so does a lens space of +y up, +z forward, whose +x is at the viewer's left.
 struct CameraSettings {
-    int width = 0, height = 0;    // pixels of the full frame
-    double sensorWidthMm = 36.0;  // pixels are square
-    Transform worldFromLens;      // rotation and translation; lens axes in metres
-    double exposureStops = 0.0;   // the picture times 2^stops
+    int width = 0, height = 0;                    // pixels of the full frame
+    double sensorWidthMm = 36.0;                  // pixels are square
+    Eigen::Vector2d sensorOffsetMm = {0.0, 0.0};  // of the frame's centre from the lens' axis
+    Transform worldFromLens;                      // rotation and translation; lens axes in metres
+    double exposureStops = 0.0;                   // the picture times 2^stops
 };
+
+/// Where `film` (pixels, full frame) lies on the sensor, from the lens' axis.
+Eigen::Vector2d sensorPointMm(const CameraSettings& settings, Vec2 film);
 
 class Camera {
 public:

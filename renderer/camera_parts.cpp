@@ -3,10 +3,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "lens/axial_beam.h"
-#include "lens/fit_cache.h"
-#include "lens/fit_domain.h"
-#include "lens/polynomial_lens.h"
+#include "renderer/camera_focus.h"
 #include "renderer/scene_parts.h"
 
 namespace etendue {
@@ -40,76 +37,38 @@ double distanceFromLensMm(const ConfigTable& table, double distanceMm, double fo
     return 0.5 * (distanceMm + std::sqrt(distanceMm * (distanceMm - 4.0 * focalMm)));
 }
 
-std::shared_ptr<const LensModel> loadThinLens(const ConfigTable& table, double focalMm,
-                                              LoadedScene& loaded) {
-    loaded.fNumber = table.number("f_number", {0.1, 1e4});
-    loaded.focusDistance = table.number("focus_distance", {1e-6, Range::infinity});
-    const double u = distanceFromLensMm(table, loaded.focusDistance * 1e3, focalMm);
-    return makeThinLens(focalMm, u, 0.5 * focalMm / loaded.fNumber);
-}
-
-/// What the photographer sets. Errors name the key that the lens cannot follow.
-LensSettings loadLensSettings(const ConfigTable& table, const Prescription& prescription) {
-    const OpticalSystem system(prescription);
-    const auto attempt = [&](const char* key, const auto& setting) {
-        try {
-            setting();
-        } catch (const std::invalid_argument& error) {
-            table.fail(key, error.what());
-        }
-    };
-    LensSettings settings;
-    if (table.has("f_number")) {
-        settings.fNumber = table.number("f_number", {0.1, 1e4});
-        attempt("f_number", [&] { stopRadiusForFNumber(system, *settings.fNumber); });
+/// Distance in front of a thin lens at which it is sharp, infinity allowed.
+double thinLensFocusMm(const ConfigTable& table, double focalMm, const CameraSettings& settings,
+                       const Scene& scene) {
+    const FocusRequest request = focusRequest(table);
+    if (request.sensorShiftMm) return focalMm * (focalMm / *request.sensorShiftMm + 1.0);
+    if (request.distanceMm) return distanceFromLensMm(table, *request.distanceMm, focalMm);
+    if (!request.point && !request.film)
+        table.fail("focus_distance",
+                   "a thin lens needs one, or focus_point, focus_pixel or "
+                   "sensor_shift_mm");
+    double depthMm = 0.0;
+    if (request.point) {
+        depthMm = depthOfPointMm(table, settings.worldFromLens, *request.point);
+    } else {
+        const Eigen::Vector2d s = sensorPointMm(settings, *request.film);
+        depthMm = depthSeenMm(table, scene, settings.worldFromLens, {},
+                              normalize(Vec3d{-s.x(), -s.y(), focalMm}));
     }
-    settings.focusDistanceMm =
-        1e3 * table.number("focus_distance", {1e-6, Range::infinity}, Range::infinity);
-    attempt("focus_distance",
-            [&] { sensorDistanceMm(paraxialData(system), settings.focusDistanceMm); });
-    settings.blades.count = static_cast<int>(table.integer("blades", {0, 64}, 0));
-    settings.blades.rotationDegrees = table.number("blade_rotation", {-360.0, 360.0}, 0.0);
-    settings.blades.roundness = table.number("blade_roundness", Range::unit(), 0.0);
-    attempt("blades", [&] { Aperture(1.0, settings.blades); });
-    return settings;
+    if (!(depthMm > 2.0 * focalMm))
+        table.fail(keyOf(request),
+                   "so near the lens cannot be focused: nearer than two focal "
+                   "lengths");
+    return depthMm;
 }
 
-FitSettings loadFitSettings(const ConfigTable& table, const std::string& representation,
-                            const Prescription& prescription) {
-    FitSettings settings;
-    settings.form = representation == "sensor-state" ? FitForm::sensorState : FitForm::twoPoint;
-    if (isAnamorphic(prescription)) settings.basis = PolynomialBasis::twoPlane;
-    settings.terms = static_cast<int>(table.integer("terms", {1, 1000}, settings.terms));
-    settings.degree = static_cast<int>(table.integer("degree", {1, mostPower}, settings.degree));
-    return settings;
-}
-
-/// `sensorSizeMm`: of all film points that a filter may ask for.
-std::shared_ptr<const LensModel> loadLens(const ConfigTable& table,
-                                          const Eigen::Vector2d& sensorSizeMm,
-                                          const LoadOptions& options, LoadingScene& loading,
-                                          LoadedScene& loaded) {
-    const std::filesystem::path file = table.file("lens");
-    loading.files.push_back(file);
-    const Prescription prescription = loadPrescription(file, table.text("zoom", ""));
-    const LensSettings settings = loadLensSettings(table, prescription);
-    loaded.fNumber = settings.fNumber.value_or(prescription.stated.fNumber);
-    loaded.focusDistance = 1e-3 * settings.focusDistanceMm;
-    const std::string representation =
-        table.choice("representation", {"two-point", "sensor-state", "traced"}, "two-point");
-    const FitSettings fitSettings = loadFitSettings(table, representation, prescription);
-    if (representation == "traced") return makeTracedLens(prescription, settings);
-
-    DomainRequest request;
-    request.sensorSizeMm = sensorSizeMm;
-    request.focusDistanceMm = settings.focusDistanceMm;
-    request.fNumber = settings.fNumber;
-    const FitDomain domain = fitDomain(prescription, request);
-    const auto notice = [&](const std::string& sentence) { loading.notes.push_back(sentence); };
-    const LensFit fit =
-        cachedFit(prescription, domain, fitSettings, options.fitCache, notice, options.fitProgress);
-    return std::make_shared<PolynomialLens>(prescription, fit,
-                                            Aperture(domain.apertureRadiusMm, settings.blades));
+std::shared_ptr<const LensModel> loadThinLens(const ConfigTable& table, double focalMm,
+                                              const CameraSettings& settings, LoadedScene& loaded) {
+    loaded.fNumber = table.number("f_number", {0.1, 1e4});
+    const double u = thinLensFocusMm(table, focalMm, settings, *loaded.scene);
+    const double v = focalMm / (1.0 - focalMm / u);
+    loaded.focusDistance = 1e-3 * (u + v);
+    return makeThinLens(focalMm, u, 0.5 * focalMm / loaded.fNumber);
 }
 
 }  // namespace
@@ -128,18 +87,19 @@ void loadCamera(const ConfigTable& table, const LoadOptions& options, LoadingSce
     settings.worldFromLens = placeCamera(table);
     settings.sensorWidthMm = table.number("sensor_width_mm", {1e-3, 1e5}, 36.0);
     settings.exposureStops = table.number("exposure", {-60, 60}, 0.0);
+    if (table.has("sensor_offset_mm")) {
+        const std::vector<double> offset = table.numbers("sensor_offset_mm", 2, {-1e5, 1e5});
+        settings.sensorOffsetMm = {offset[0], offset[1]};
+    }
     std::shared_ptr<const LensModel> lens;
     if (table.has("lens")) {
         if (table.has("model")) table.fail("model", "give either model or lens");
-        const double pixelMm = settings.sensorWidthMm / settings.width;
-        const double margin = 2.0 * static_cast<double>(loaded.film.filterRadius);
-        const Eigen::Vector2d sensorSizeMm(pixelMm * (settings.width + margin),
-                                           pixelMm * (settings.height + margin));
-        lens = loadLens(table, sensorSizeMm, options, loading, loaded);
+        lens = loadLens(table, settings, options, loading, loaded);
     } else {
         const std::string model = table.choice("model", {"pinhole", "thin-lens"}, "pinhole");
         const double focalMm = focalLengthMm(table, settings.sensorWidthMm);
-        lens = model == "pinhole" ? makePinhole(focalMm) : loadThinLens(table, focalMm, loaded);
+        lens = model == "pinhole" ? makePinhole(focalMm)
+                                  : loadThinLens(table, focalMm, settings, loaded);
     }
     table.finish();
     loaded.camera = std::make_unique<Camera>(std::move(lens), settings);

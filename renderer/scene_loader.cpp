@@ -26,6 +26,16 @@ Config loadWithIncludes(const std::filesystem::path& file,
     return config;
 }
 
+/// The file's [camera] in place of the scene's, which still says where it stands.
+void lookThrough(const std::filesystem::path& file, Config& config,
+                 std::vector<std::filesystem::path>& files) {
+    const Config camera = loadWithIncludes(file, files, 0);
+    for (const std::string& key : camera.root().keys())
+        if (key != "camera" && key != "include")
+            camera.root().fail(key, "a camera file has a [camera] table and nothing else");
+    config.replaceTable("camera", camera, {"from", "to", "up"});
+}
+
 FilmSettings loadFilm(const ConfigTable& table) {
     FilmSettings film;
     film.width = static_cast<int>(table.integer("width", {1, 32768}, film.width));
@@ -113,14 +123,6 @@ void addSoftLight(LoadingScene& loading) {
     loading.notes.push_back("nothing emits light: a soft sky was added");
 }
 
-LoadedScene finish(LoadedScene loaded, LoadingScene loading, const LoadOptions& options) {
-    loaded.hash = contentHash(loading.files, options.overrides);
-    loaded.notes = std::move(loading.notes);
-    loaded.scene = std::make_unique<Scene>(std::move(loading.parts), options.threads);
-    if (!loaded.camera) addAutomaticCamera(loaded);
-    return loaded;
-}
-
 }  // namespace
 
 Vec3d vector3(const ConfigTable& table, std::string_view key, Range range) {
@@ -133,16 +135,17 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     LoadingScene loading;
     const bool isModel = file.extension() == ".obj" || file.extension() == ".OBJ";
     Config config = isModel ? Config::parse("", file) : loadWithIncludes(file, loading.files, 0);
+    if (!options.camera.empty()) lookThrough(options.camera, config, loading.files);
     for (const std::string& assignment : options.overrides) config.set(assignment);
     const ConfigTable root = config.root();
     root.files("include");
     loaded.film = loadFilm(root.table("film"));
     loadEstimator(root.table("estimator"), loaded);
-    if (root.has("camera")) loadCamera(root.table("camera"), options, loading, loaded);
     loadMaterials(root.tables("material"), loading);
     if (isModel) addModel(file, loading);
     loadMeshes(root.tables("mesh"), root.tables("instance"), loading);
     loadLights(root.tables("light"), loading);
+    const bool hasCamera = root.has("camera");
     root.finish();
     if (!anythingEmits(loading)) {
         if (isModel)
@@ -150,7 +153,16 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
         else
             loading.notes.push_back("nothing in the scene emits light: the picture will be black");
     }
-    return finish(std::move(loaded), std::move(loading), options);
+    loaded.scene = std::make_unique<Scene>(std::move(loading.parts), options.threads);
+    // Last, since it may focus on the scene, and since fitting its lens takes time: by now all
+    // other input is known to be good.
+    if (hasCamera)
+        loadCamera(root.table("camera"), options, loading, loaded);
+    else
+        addAutomaticCamera(loaded);
+    loaded.hash = contentHash(loading.files, options.overrides);
+    loaded.notes = std::move(loading.notes);
+    return loaded;
 }
 
 }  // namespace etendue

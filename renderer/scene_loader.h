@@ -36,11 +36,14 @@ struct LoadedScene {
 };
 
 struct LoadOptions {
-    std::vector<std::string> overrides;  // "key=value", after the file
+    std::vector<std::string> overrides;  // "key=value", after the files
     int threads = 1;
     std::filesystem::path fitCache = {};  // folder of lens fits; empty: none is kept
     /// Hears how far a lens fit is: share in 0–1, and what is being done.
     std::function<void(double, std::string_view)> fitProgress = {};
+    /// A file whose [camera] is looked through in place of the scene's, from the scene's `from`,
+    /// `to` and `up` unless it has its own; empty: none.
+    std::filesystem::path camera = {};
 };
 
 /// `file` is a scene (.toml) or a bare model (.obj), which gets a camera and, if nothing in it

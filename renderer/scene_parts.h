@@ -22,12 +22,17 @@ struct LoadingScene {
     const Material* defaultMaterial = nullptr;
 };
 
-/// [camera]
+/// [camera]. The scene must exist: it may be focused on.
 void loadCamera(const ConfigTable& table, const LoadOptions& options, LoadingScene& loading,
                 LoadedScene& loaded);
 /// Lens axes in the world: +z toward `to`, +y up as far as it can be, +x to the viewer's left
 /// (docs/camera.md, "Which way is up").
 Transform lookAt(Vec3d from, Vec3d to, Vec3d up);
+
+/// [camera] lens = …
+std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, const CameraSettings& camera,
+                                          const LoadOptions& options, LoadingScene& loading,
+                                          LoadedScene& loaded);
 
 /// [[material]]
 void loadMaterials(const std::vector<ConfigTable>& tables, LoadingScene& loading);

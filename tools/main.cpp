@@ -38,6 +38,13 @@ std::string joinArguments(int argc, char** argv) {
     return line;
 }
 
+void addCamera(CLI::App* command, std::filesystem::path& camera) {
+    command
+        ->add_option("--camera", camera,
+                     "Look through this file's [camera], such as scenes/cameras/fisheye.toml")
+        ->type_name("FILE");
+}
+
 void addOverrides(CLI::App* command, std::vector<std::string>& overrides) {
     command->add_option("-s,--set", overrides, "Override any key of the scene; may be repeated")
         ->allow_extra_args(false)
@@ -97,6 +104,7 @@ void addRender(CLI::App& app, RenderCommand& c) {
         ->add_option("--technique-images", c.techniqueImages,
                      "An EXR of all techniques: s2t1.R … weighted, s2t1.unweighted.R … not")
         ->type_name("FILE");
+    addCamera(render, c.camera);
     addOverrides(render, c.overrides);
     const std::map<std::string, ProgressStyle> styles{{"auto", ProgressStyle::automatic},
                                                       {"bar", ProgressStyle::bar},
@@ -123,6 +131,7 @@ void addCheck(CLI::App& app, CheckCommand& c) {
     CLI::App* check =
         app.add_subcommand("check", "Load a scene, report what is in it, render nothing");
     check->add_option("scene", c.scene, "Scene file or bare model")->required()->type_name("FILE");
+    addCamera(check, c.camera);
     check
         ->add_option("-s,--set", c.overrides,
                      "KEY=VALUE overrides any key of the scene (repeatable)")

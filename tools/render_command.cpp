@@ -114,6 +114,7 @@ void printNotes(const LoadedScene& loaded, bool isQuiet) {
 
 LoadOptions loadOptions(const RenderCommand& command, int threads) {
     LoadOptions options{command.overrides, threads, fitCacheDirectory()};
+    options.camera = command.camera;
     if (!command.size.empty()) {
         options.overrides.push_back(fmt::format("film.width={}", command.size[0]));
         options.overrides.push_back(fmt::format("film.height={}", command.size[1]));
@@ -227,8 +228,9 @@ ExitCode runRender(const RenderCommand& command) {
 }
 
 ExitCode runCheck(const CheckCommand& command) {
-    const LoadedScene loaded =
-        loadScene(command.scene, {command.overrides, hardwareThreads(), fitCacheDirectory()});
+    LoadOptions options{command.overrides, hardwareThreads(), fitCacheDirectory()};
+    options.camera = command.camera;
+    const LoadedScene loaded = loadScene(command.scene, options);
     printNotes(loaded, false);
     const BoundingSphere bounds = loaded.scene->bounds();
     fmt::print("{}: valid\n", command.scene.string());

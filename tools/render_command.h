@@ -13,7 +13,7 @@
 namespace etendue {
 
 struct RenderCommand {
-    std::filesystem::path scene, output, preview, techniqueImages;
+    std::filesystem::path scene, camera, output, preview, techniqueImages;
     std::optional<int> samples, threads;
     std::uint64_t seed = 0;
     std::optional<double> timeLimitSeconds;
@@ -30,7 +30,7 @@ struct RenderCommand {
 ExitCode runRender(const RenderCommand& command);
 
 struct CheckCommand {
-    std::filesystem::path scene;
+    std::filesystem::path scene, camera;
     std::vector<std::string> overrides;
 };
 

@@ -120,5 +120,121 @@ TEST_CASE("Scene: what a lens cannot be set to is an error at its key") {
     CHECK(error("f_number = 5.6\nblades = 7\nblade_rotation = 10\nblade_roundness = 0.3\n") == "");
 }
 
+/// Two rays from one film point through opposite parts of the aperture cross at the depth that is
+/// sharp there: metres along the axis from the lens' origin.
+double sharpDepth(const Camera& camera, Vec2 film) {
+    const auto a = camera.sampleRay(film, {0.5f, 0.1f}, green);
+    const auto b = camera.sampleRay(film, {0.5f, 0.9f}, green);
+    REQUIRE((a && b));
+    const Vec3d apart = toDouble(b->origin) - toDouble(a->origin);
+    const Vec3d da = toDouble(a->direction), db = toDouble(b->direction);
+    // The nearest points of the two lines.
+    const double along = dot(da, db), closing = 1.0 - along * along;
+    const double t = (dot(apart, da) - dot(apart, db) * along) / closing;
+    const Vec3d meeting = toDouble(a->origin) + da * t;
+    return dot(meeting - toDouble(camera.position()), toDouble(camera.forward()));
+}
+
+const std::string wallAtFourMetres =
+    "[[mesh]]\nshape = \"rectangle\"\ntransform = [{scale = 50}, {translate = [0, 1, 0]}]\n";
+
+TEST_CASE("Scene: a lens is focused on a point, on what a pixel shows, or by its sensor") {
+    const TemporaryFolder folder;
+    // Stopped down, where spherical aberration no longer moves the focus.
+    const std::string traced = "representation = \"traced\"\nf_number = 11\n";
+    const auto depthWith = [&](const std::string& focus) {
+        return sharpDepth(
+            *loaded(folder, sceneWith("double-gauss-100mm.toml", traced + focus + wallAtFourMetres))
+                 .camera,
+            {36, 24});
+    };
+    // The exact rays at 550 nm and near the axis; the focus is the paraxial one at the d line.
+    const doctest::Approx fourMetres = doctest::Approx(4.0).epsilon(0.02);
+    CHECK(depthWith("focus_point = [0.5, 1.5, 0]\n") == fourMetres);
+    CHECK(depthWith("focus_pixel = [36, 24]\n") == fourMetres);
+    CHECK(depthWith("focus_point = [0, 1, 2]\n") == doctest::Approx(2.0).epsilon(0.02));
+    // x x' = f²: for a shift of 2.6 mm the plane lies f²/2.6 mm = 3.8 m before the front focus.
+    const LoadedScene shifted =
+        loaded(folder, sceneWith("double-gauss-100mm.toml", traced + "sensor_shift_mm = 2.6\n"));
+    const LoadedScene same = loaded(
+        folder,
+        sceneWith("double-gauss-100mm.toml",
+                  traced + "focus_distance = " + std::to_string(shifted.focusDistance) + "\n"));
+    CHECK(shifted.focusDistance == doctest::Approx(4.1).epsilon(0.03));
+    const auto a = shifted.camera->sampleRay({10, 10}, {0.3f, 0.4f}, green);
+    const auto b = same.camera->sampleRay({10, 10}, {0.3f, 0.4f}, green);
+    REQUIRE((a && b));
+    CHECK(length(a->direction - b->direction) < 1e-6f);
+}
+
+TEST_CASE("Scene: so is a thin lens") {
+    const TemporaryFolder folder;
+    const auto depthWith = [&](const std::string& focus) {
+        const std::string text =
+            "[film]\nwidth = 72\nheight = 48\n[camera]\nmodel = \"thin-lens\"\nfrom = [0, 1, 4]\n"
+            "to = [0, 1, 0]\nf_number = 1\n" +
+            focus + wallAtFourMetres + "[[light]]\ntype = \"constant\"\nradiance = [1, 1, 1]\n";
+        return sharpDepth(*loaded(folder, text).camera, {20, 30});
+    };
+    // Rays 40 mm apart, their directions rounded to 6e-8: they cross 4 m away to 4 m · 4 m · 1e-7 /
+    // 40 mm = 4e-5 m, and a few roundings more.
+    constexpr double rounding = 1e-3;
+    CHECK(depthWith("focus_point = [0.5, 1.5, 0]\n") == doctest::Approx(4.0).epsilon(rounding));
+    CHECK(depthWith("focus_pixel = [3, 4]\n") == doctest::Approx(4.0).epsilon(rounding));
+    CHECK(depthWith("sensor_shift_mm = 0.5\n") == doctest::Approx(5.05).epsilon(rounding));
+}
+
+TEST_CASE("Scene: what cannot be focused on is named") {
+    const TemporaryFolder folder;
+    const auto errorWith = [&](const std::string& keys) {
+        return errorOf(
+            folder, sceneWith("double-gauss-100mm.toml", "representation = \"traced\"\n" + keys));
+    };
+    CHECK(errorWith("focus_distance = 3\nfocus_point = [0, 0, 0]\n").find("give one of") !=
+          std::string::npos);
+    CHECK(errorWith("focus_point = [0, 1, 5]\n").find("in front of the lens") != std::string::npos);
+    CHECK(errorWith("focus_pixel = [36, 24]\n").find("nothing to be seen") != std::string::npos);
+    CHECK(errorWith("focus_point = [0, 1, 3.95]\n").find("focus") != std::string::npos);
+    CHECK(errorWith("sensor_shift_mm = 300\n").find("so far back") != std::string::npos);
+}
+
+TEST_CASE("Scene: a sensor off the axis sees the part of the picture that lies there") {
+    const TemporaryFolder folder;
+    for (const std::string representation : {"traced", "two-point"}) {
+        const std::string keys =
+            "focus_distance = 4\nrepresentation = \"" + representation + "\"\n";
+        const LoadedScene centred = loaded(folder, sceneWith("double-gauss-100mm.toml", keys));
+        const LoadedScene moved = loaded(
+            folder, sceneWith("double-gauss-100mm.toml", keys + "sensor_offset_mm = [3, -2]\n"));
+        // 36 mm on 72 pixels: 3 mm are 6 of them.
+        const auto a = centred.camera->sampleRay({26, 20}, {0.7f, 0.4f}, green);
+        const auto b = moved.camera->sampleRay({20, 24}, {0.7f, 0.4f}, green);
+        REQUIRE((a && b));
+        // Two fits, of different domains.
+        const float tolerance = representation == "traced" ? 1e-6f : 5e-4f;
+        CHECK(length(a->direction - b->direction) <= tolerance);
+        const auto back =
+            moved.camera->connect(b->origin + b->direction * 3.0f, {0.7f, 0.4f}, green);
+        REQUIRE(back);
+        CHECK(back->film.x == doctest::Approx(20.0).epsilon(1e-4));
+        CHECK(back->film.y == doctest::Approx(24.0).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("Scene: another file's camera is looked through from where the scene's stands") {
+    const TemporaryFolder folder;
+    const auto scene = folder.write("scene.toml", sceneWith("double-gauss-100mm.toml", ""));
+    LoadOptions options;
+    options.camera = folder.write("camera.toml", "[camera]\nmodel = \"pinhole\"\nfov = 30\n");
+    const LoadedScene pinhole = loadScene(scene, options);
+    CHECK(pinhole.fNumber == 0.0);
+    CHECK(length(pinhole.camera->position() - Vec3{0, 1, 4}) == 0.0f);
+    CHECK(pinhole.hash != loadScene(scene, {}).hash);
+    options.camera = folder.write("camera.toml", "[camera]\nfrom = [0, 1, 9]\n[film]\nwidth = 3\n");
+    CHECK_THROWS_WITH_AS(loadScene(scene, options),
+                         doctest::Contains("a camera file has a [camera] table and nothing else"),
+                         InputError);
+}
+
 }  // namespace
 }  // namespace etendue

@@ -1,0 +1,123 @@
+// [camera] lens = …: a lens of glass, by its exact trace or by a polynomial fitted to it.
+#include <stdexcept>
+
+#include "lens/axial_beam.h"
+#include "lens/fit_cache.h"
+#include "lens/fit_domain.h"
+#include "lens/polynomial_lens.h"
+#include "renderer/camera_focus.h"
+#include "renderer/scene_parts.h"
+
+namespace etendue {
+
+namespace {
+
+/// Runs `setting`, which may find that the lens cannot follow `key`.
+template <class Setting>
+auto attempt(const ConfigTable& table, const char* key, const Setting& setting) {
+    try {
+        return setting();
+    } catch (const std::invalid_argument& error) {
+        table.fail(key, error.what());
+    }
+}
+
+/// The ray from `film` through the centre of the stop, with the lens focused at infinity: what the
+/// photographer points at.
+ExitRay chiefRay(const ConfigTable& table, const Prescription& prescription,
+                 const CameraSettings& settings, Vec2 film) {
+    const Eigen::Vector2d sensorMm = sensorPointMm(settings, film);
+    const auto ray = makeTracedLens(prescription, {})
+                         ->trace({sensorMm}, {Eigen::Vector2d::Zero()},
+                                 static_cast<double>(Wavelengths::rgbWavelengthNm));
+    if (!ray) table.fail("focus_pixel", "no light reaches that pixel through the lens");
+    return *ray;
+}
+
+double focusDistanceMm(const ConfigTable& table, const Prescription& prescription,
+                       const ParaxialData& data, const CameraSettings& settings,
+                       const Scene& scene) {
+    const FocusRequest request = focusRequest(table);
+    const char* key = keyOf(request);
+    if (request.sensorShiftMm)
+        return attempt(table, key,
+                       [&] { return focusDistanceForShiftMm(data, *request.sensorShiftMm); });
+    double distanceMm = request.distanceMm.value_or(std::numeric_limits<double>::infinity());
+    if (request.point || request.film) {
+        double depthMm = 0.0;
+        if (request.point) {
+            depthMm = depthOfPointMm(table, settings.worldFromLens, *request.point);
+        } else {
+            const ExitRay ray = chiefRay(table, prescription, settings, *request.film);
+            depthMm = depthSeenMm(table, scene, settings.worldFromLens,
+                                  {ray.origin.x(), ray.origin.y(), ray.origin.z()},
+                                  {ray.direction.x(), ray.direction.y(), ray.direction.z()});
+        }
+        distanceMm = attempt(table, key,
+                             [&] { return focusDistanceForDepthMm(prescription, data, depthMm); });
+    }
+    attempt(table, key, [&] { return sensorDistanceMm(data, distanceMm); });
+    return distanceMm;
+}
+
+/// What the photographer sets. Errors name the key that the lens cannot follow.
+LensSettings loadLensSettings(const ConfigTable& table, const Prescription& prescription,
+                              const CameraSettings& camera, const Scene& scene) {
+    const OpticalSystem system(prescription);
+    LensSettings settings;
+    if (table.has("f_number")) {
+        settings.fNumber = table.number("f_number", {0.1, 1e4});
+        attempt(table, "f_number", [&] { return stopRadiusForFNumber(system, *settings.fNumber); });
+    }
+    settings.focusDistanceMm =
+        focusDistanceMm(table, prescription, paraxialData(system), camera, scene);
+    settings.blades.count = static_cast<int>(table.integer("blades", {0, 64}, 0));
+    settings.blades.rotationDegrees = table.number("blade_rotation", {-360.0, 360.0}, 0.0);
+    settings.blades.roundness = table.number("blade_roundness", Range::unit(), 0.0);
+    attempt(table, "blades", [&] { return Aperture(1.0, settings.blades); });
+    return settings;
+}
+
+FitSettings loadFitSettings(const ConfigTable& table, const std::string& representation,
+                            const Prescription& prescription) {
+    FitSettings settings;
+    settings.form = representation == "sensor-state" ? FitForm::sensorState : FitForm::twoPoint;
+    if (isAnamorphic(prescription)) settings.basis = PolynomialBasis::twoPlane;
+    settings.terms = static_cast<int>(table.integer("terms", {1, 1000}, settings.terms));
+    settings.degree = static_cast<int>(table.integer("degree", {1, mostPower}, settings.degree));
+    return settings;
+}
+
+}  // namespace
+
+std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, const CameraSettings& camera,
+                                          const LoadOptions& options, LoadingScene& loading,
+                                          LoadedScene& loaded) {
+    const std::filesystem::path file = table.file("lens");
+    loading.files.push_back(file);
+    const Prescription prescription = loadPrescription(file, table.text("zoom", ""));
+    const std::string representation =
+        table.choice("representation", {"two-point", "sensor-state", "traced"}, "two-point");
+    const FitSettings fitSettings = loadFitSettings(table, representation, prescription);
+    const LensSettings settings = loadLensSettings(table, prescription, camera, *loaded.scene);
+    table.finish();  // a mistyped key is reported now, and not after seconds of fitting
+    loaded.fNumber = settings.fNumber.value_or(prescription.stated.fNumber);
+    loaded.focusDistance = 1e-3 * settings.focusDistanceMm;
+    if (representation == "traced") return makeTracedLens(prescription, settings);
+
+    DomainRequest request;
+    const double margin = 2.0 * static_cast<double>(loaded.film.filterRadius);
+    const Eigen::Vector2d filmPoints(camera.width + margin, camera.height + margin);
+    request.sensorSizeMm =
+        filmPoints * (camera.sensorWidthMm / camera.width) + 2.0 * camera.sensorOffsetMm.cwiseAbs();
+    request.focusDistanceMm = settings.focusDistanceMm;
+    request.fNumber = settings.fNumber;
+    const FitDomain domain = fitDomain(prescription, request);
+    const auto notice = [&](const std::string& sentence) { loading.notes.push_back(sentence); };
+    const LensFit fit =
+        cachedFit(prescription, domain, fitSettings, options.fitCache, notice, options.fitProgress);
+    return std::make_shared<PolynomialLens>(prescription, fit,
+                                            Aperture(domain.apertureRadiusMm, settings.blades));
+}
+
+}  // namespace etendue

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* formatName = "etendue lens fit 4";
+constexpr const char* formatName = "etendue lens fit 5";
 constexpr std::uintmax_t largestFileBytes = 64u << 20;
 
 struct Refusal : std::runtime_error {
@@ -214,6 +214,7 @@ Json jsonOf(const LensFit& fit) {
               {"wrongly_blocked", fit.clipErrors.wronglyBlocked}}},
             {"start",
              {{"sensor", jsonOf(fit.start.sensor)},
+              {"nearness_bend", fit.start.nearnessBend},
               {"widest_field", fit.start.widestField},
               {"error_mm", fit.start.errorMm}}},
             {"slope", jsonOf(fit.slope)},
@@ -236,8 +237,8 @@ LensFit fitFrom(const Json& json) {
     fit.clipErrors = {clip.at("wrongly_accepted").get<double>(),
                       clip.at("wrongly_blocked").get<double>()};
     const Json& start = json.at("start");
-    fit.start = {polynomialFrom(start.at("sensor")), start.at("widest_field").get<double>(),
-                 start.at("error_mm").get<double>()};
+    fit.start = {polynomialFrom(start.at("sensor")), start.at("nearness_bend").get<double>(),
+                 start.at("widest_field").get<double>(), start.at("error_mm").get<double>()};
     fit.slope = polynomialFrom(json.at("slope"));
     fit.training = countsFrom(json.at("training"));
     fit.errors = errorsFrom(json.at("errors"));

@@ -138,7 +138,7 @@ LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
                       candidateTerms(settings.basis, settings.degree, apertureOutputs), scaling,
                       inputs, apertures, apertureTolerances(apertures), optionsFor(half, end));
     }
-    fit.start = fitConnectStart(training.rays, !isAnamorphic(prescription));
+    fit.start = fitConnectStart(training.rays, lens.system(), !isAnamorphic(prescription));
     if (domain.sensorTravelMm > 0.0)
         fit.slope = fitSensorSlope(training.rays, !isAnamorphic(prescription));
     tell(end, "fitting the rims");

@@ -14,19 +14,17 @@ PolynomialLens::PolynomialLens(const Prescription& prescription, const LensFit& 
       aperture_(aperture),
       clip_(fit.clip.squares),
       clipCount_(fit.clip.count()),
+      pupil_(OpticalSystem(prescription)),
       start_(fit.start.sensor),
+      nearnessBend_(fit.start.nearnessBend),
       widestField_(fit.start.widestField) {
     if (fit.prescriptionHash != contentHash(prescription))
         throw std::invalid_argument("polynomial lens: the fit is of another prescription");
     constexpr double rounding = 1.0 + 1e-12;
     if (aperture.radiusMm() > fit.domain.apertureRadiusMm * rounding)
         throw std::invalid_argument("polynomial lens: the aperture is wider than the fit's domain");
-    const OpticalSystem system(prescription);
-    const ParaxialData data = paraxialData(system);
+    const ParaxialData data = paraxialData(OpticalSystem(prescription));
     focalLengthMm_ = 0.5 * (data.x.focalLengthMm + data.y.focalLengthMm);
-    entrancePupilZMm_ = 0.5 * (data.x.entrancePupilZMm + data.y.entrancePupilZMm);
-    entrancePupilPerStop_ << data.x.entrancePupilPerStop, data.y.entrancePupilPerStop;
-    pupilWanderMm_ = system.surfaces.front().semiApertureMm + std::abs(entrancePupilZMm_);
 }
 
 std::optional<ExitRay> PolynomialLens::trace(SensorPoint sensor, AperturePoint aperture,
@@ -69,14 +67,11 @@ Connection PolynomialLens::solve(const Eigen::Vector3d& targetMm, AperturePoint 
 std::optional<Eigen::Vector2d> PolynomialLens::firstGuess(const Eigen::Vector3d& target,
                                                           AperturePoint aperture,
                                                           double wavelengthNm) const {
-    Eigen::Vector3d pupil;
-    pupil << aperture.mm.cwiseProduct(entrancePupilPerStop_), entrancePupilZMm_;
-    const Eigen::Vector3d toTarget = target - pupil;
-    const double distance = toTarget.norm();
-    const Eigen::Vector2d field = fieldCoordinates(toTarget / distance);
-    if (!(field.norm() <= widestField_ + pupilWanderMm_ / distance)) return {};
-    const PolynomialValues<double> guess = start_.values({field, aperture.mm, wavelengthNm});
-    return Eigen::Vector2d(guess[0], guess[1])
+    const TargetSight sight = pupil_.sight(target, aperture);
+    if (!(sight.field.norm() <= widestField_ + sight.nearness)) return {};
+    const PolynomialValues<double> at = start_.values({sight.field, aperture.mm, wavelengthNm});
+    const double k = std::min(sight.nearness, 1.0), bent = k + nearnessBend_ * k * k;
+    return Eigen::Vector2d(at[0] + bent * at[2], at[1] + bent * at[3])
         .cwiseMax(-domain_.sensorHalfSizeMm)
         .cwiseMin(domain_.sensorHalfSizeMm);
 }

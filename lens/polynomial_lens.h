@@ -47,12 +47,10 @@ private:
     Aperture aperture_;
     PolynomialEvaluator<double> clip_;
     std::size_t clipCount_;
-    PolynomialEvaluator<double> start_;
-    double widestField_;
+    EntrancePupil pupil_;
+    PolynomialEvaluator<double> start_;  // ConnectStart
+    double nearnessBend_, widestField_;
     double focalLengthMm_;
-    Eigen::Vector2d entrancePupilPerStop_;
-    double entrancePupilZMm_;
-    double pupilWanderMm_;  // how far rays may leave from where the paraxial pupil says
 };
 
 }  // namespace etendue

@@ -1,7 +1,9 @@
 #include "lens/sensor_fits.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 
+#include "lens/paraxial.h"
 #include "lens/polynomial.h"
 #include "lens/sparse_fit.h"
 
@@ -9,37 +11,102 @@ namespace etendue {
 
 namespace {
 
+using Eigen::Index;
+
 std::span<const FitRay> enoughOf(std::span<const FitRay> training) {
     return training.first(std::min<std::size_t>(6000, training.size()));
 }
 
-SparsePolynomial fitVector(std::span<const PolynomialInput> inputs, const Eigen::MatrixXd& targets,
-                           bool isAxial) {
+/// `targets`: a vector for each entry of `tolerances`.
+SparsePolynomial fitVectors(std::span<const PolynomialInput> inputs, const Eigen::MatrixXd& targets,
+                            const Eigen::VectorXd& tolerances, bool isAxial) {
     // As a first guess it needs no more: what it is off by, a step of Newton's method squares.
     constexpr int degree = 9, terms = 32;
     const PolynomialBasis basis = isAxial ? PolynomialBasis::axial : PolynomialBasis::twoPlane;
-    const OutputCount outputs{1, 0};
+    const OutputCount outputs{static_cast<int>(tolerances.size()), 0};
     return fitSparse(basis, outputs, candidateTerms(basis, degree, outputs),
                      scalingFor(basis, inputs, Coupling::fitted), inputs, targets,
-                     Eigen::VectorXd::Ones(2), {terms, 0});
+                     tolerances.replicate(1, 2).transpose().reshaped(), {terms, 0});
+}
+
+/// From the pupil point to the ray's line, at a right angle to it, mm.
+Eigen::Vector3d offsetOf(const FitRay& ray, const Eigen::Vector3d& pupilPoint,
+                         const PupilSphere& sphere) {
+    const auto leaving = sphere.ray(ray.pupil);
+    if (!leaving) return Eigen::Vector3d::Zero();  // by rounding, at the sphere's equator
+    const Eigen::Vector3d fromPupil = toEigen(leaving->origin) - pupilPoint;
+    return fromPupil - fromPupil.dot(ray.direction) * ray.direction;
+}
+
+/// G: what takes away, to first order, that the ray of a far target passes a near one by.
+Eigen::Vector2d byNearness(const FitRay& ray, const Eigen::Vector3d& offset, double wanderMm) {
+    const Eigen::Matrix<double, 3, 2>& bySensor = ray.directionBySensor;
+    const Eigen::Matrix2d squared = bySensor.transpose() * bySensor;
+    return squared.inverse() * (bySensor.transpose() * offset) / -wanderMm;
+}
+
+/// In least squares over targets on the rays, of all degrees of nearness.
+double fitBend(const SparsePolynomial& start, std::span<const FitRay> rays,
+               const EntrancePupil& pupil, const PupilSphere& sphere) {
+    const PolynomialEvaluator<double> evaluator(start);
+    double products = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const FitQuery& query = rays[i].query;
+        const Eigen::Vector3d point = pupil.point(query.aperture);
+        const double k = (static_cast<double>(i) + 0.5) / static_cast<double>(rays.size());
+        const double distance = pupil.wanderMm() / k;
+        const Eigen::Vector3d offset = offsetOf(rays[i], point, sphere);
+        const double along = std::sqrt(std::max(0.0, distance * distance - offset.squaredNorm()));
+        const Eigen::Vector3d target = point + offset + along * rays[i].direction;
+        const PolynomialValues<double> at = evaluator.values(
+            {pupil.sight(target, query.aperture).field, query.aperture.mm, query.wavelengthNm});
+        const Eigen::Vector2d far(at[0], at[1]), slope(at[2], at[3]);
+        products += k * k * slope.dot(query.sensor.mm - far - k * slope);
+        squares += k * k * k * k * slope.squaredNorm();
+    }
+    return squares > 0.0 ? products / squares : 0.0;
 }
 
 }  // namespace
 
-ConnectStart fitConnectStart(std::span<const FitRay> training, bool isAxial) {
+EntrancePupil::EntrancePupil(const OpticalSystem& system) {
+    const ParaxialData data = paraxialData(system);
+    perStop_ << data.x.entrancePupilPerStop, data.y.entrancePupilPerStop;
+    zMm_ = 0.5 * (data.x.entrancePupilZMm + data.y.entrancePupilZMm);
+    wanderMm_ = system.surfaces.front().semiApertureMm + std::abs(zMm_);
+}
+
+Eigen::Vector3d EntrancePupil::point(AperturePoint aperture) const {
+    return {aperture.mm.x() * perStop_.x(), aperture.mm.y() * perStop_.y(), zMm_};
+}
+
+TargetSight EntrancePupil::sight(const Eigen::Vector3d& targetMm, AperturePoint aperture) const {
+    const Eigen::Vector3d toTarget = targetMm - point(aperture);
+    const double perDistance = 1.0 / toTarget.norm();
+    return {fieldCoordinates(perDistance * toTarget), wanderMm_ * perDistance};
+}
+
+ConnectStart fitConnectStart(std::span<const FitRay> training, const OpticalSystem& system,
+                             bool isAxial) {
     ConnectStart start;
     for (const FitRay& ray : training)
         start.widestField = std::max(start.widestField, fieldCoordinates(ray.direction).norm());
     start.widestField *= 1.05;  // for corners that no training ray came near
     training = enoughOf(training);
+    const EntrancePupil pupil(system);
+    const PupilSphere sphere(system);
     std::vector<PolynomialInput> inputs;
-    Eigen::MatrixXd targets(static_cast<Eigen::Index>(training.size()), 2);
+    Eigen::MatrixXd targets(static_cast<Index>(training.size()), 4);
     for (const FitRay& ray : training) {
-        targets.row(static_cast<Eigen::Index>(inputs.size())) = ray.query.sensor.mm.transpose();
+        const Eigen::Vector3d offset = offsetOf(ray, pupil.point(ray.query.aperture), sphere);
+        targets.row(static_cast<Index>(inputs.size())) << ray.query.sensor.mm.transpose(),
+            byNearness(ray, offset, pupil.wanderMm()).transpose();
         inputs.push_back(
             {fieldCoordinates(ray.direction), ray.query.aperture.mm, ray.query.wavelengthNm});
     }
-    start.sensor = fitVector(inputs, targets, isAxial);
+    // Most targets are not near.
+    start.sensor = fitVectors(inputs, targets, Eigen::Vector2d(1.0, 3.0), isAxial);
+    start.nearnessBend = fitBend(start.sensor, training, pupil, sphere);
     const PolynomialEvaluator<double> evaluator(start.sensor);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         const PolynomialValues<double> at = evaluator.values(inputs[i]);
@@ -53,12 +120,12 @@ ConnectStart fitConnectStart(std::span<const FitRay> training, bool isAxial) {
 SparsePolynomial fitSensorSlope(std::span<const FitRay> training, bool isAxial) {
     training = enoughOf(training);
     std::vector<PolynomialInput> inputs;
-    Eigen::MatrixXd targets(static_cast<Eigen::Index>(training.size()), 2);
+    Eigen::MatrixXd targets(static_cast<Index>(training.size()), 2);
     for (const FitRay& ray : training) {
-        targets.row(static_cast<Eigen::Index>(inputs.size())) = ray.slope.transpose();
+        targets.row(static_cast<Index>(inputs.size())) = ray.slope.transpose();
         inputs.push_back({ray.query.sensor.mm, ray.query.aperture.mm, ray.query.wavelengthNm});
     }
-    return fitVector(inputs, targets, isAxial);
+    return fitVectors(inputs, targets, Eigen::VectorXd::Ones(1), isAxial);
 }
 
 }  // namespace etendue

@@ -16,15 +16,42 @@ inline Eigen::Vector2d fieldCoordinates(const Eigen::Vector3d& direction) {
     return direction.head<2>() * std::sqrt(2.0 / (1.0 + direction.z()));
 }
 
-/// The sensor point from the direction in which the target is seen and from the aperture point.
+/// How a target looks from a point of the entrance pupil.
+struct TargetSight {
+    Eigen::Vector2d field;  // coordinates of its direction
+    double nearness;        // EntrancePupil's wander over its distance
+};
+
+/// The paraxial one, the mean of both planes.
+class EntrancePupil {
+public:
+    explicit EntrancePupil(const OpticalSystem& system);
+
+    /// Where the ray through `aperture` paraxially comes from, lens space, mm.
+    Eigen::Vector3d point(AperturePoint aperture) const;
+    TargetSight sight(const Eigen::Vector3d& targetMm, AperturePoint aperture) const;
+    /// How far from there rays may leave.
+    double wanderMm() const { return wanderMm_; }
+
+private:
+    Eigen::Vector2d perStop_;
+    double zMm_, wanderMm_;
+};
+
+/// The sensor point from how the target looks (k its nearness) and from the aperture point:
+///     s ≈ S + k' G,   k' = k + bend k²,   k at most 1
+/// with G the derivative of s by k for the far targets that S is exact for. Rays that leave from
+/// elsewhere than the pupil point see a near target in another direction.
 struct ConnectStart {
-    SparsePolynomial sensor;   // (field coordinates of the exit direction, a, λ) → s, mm
-    double widestField = 0.0;  // no |field coordinates| in the domain are larger
-    double errorMm = 0.0;      // rms over the training rays
+    SparsePolynomial sensor;  // (field, a, λ) → S and G, mm
+    double nearnessBend = 0.0;
+    double widestField = 0.0;  // no |field| of a ray in the domain is larger
+    double errorMm = 0.0;      // of S, rms over the training rays
 };
 
 /// `isAxial`: whether the lens turns about its axis unchanged.
-ConnectStart fitConnectStart(std::span<const FitRay> training, bool isAxial);
+ConnectStart fitConnectStart(std::span<const FitRay> training, const OpticalSystem& system,
+                             bool isAxial);
 
 /// (s, a, λ) → slope at the sensor.
 SparsePolynomial fitSensorSlope(std::span<const FitRay> training, bool isAxial);

@@ -74,6 +74,7 @@ TEST_CASE("Fit file: what is read has the bits that were written") {
     checkSame(content.fit->slope, someFit().slope);
     checkSame(content.fit->clip.squares, someFit().clip.squares);
     checkSame(content.fit->start.sensor, someFit().start.sensor);
+    CHECK(content.fit->start.nearnessBend == someFit().start.nearnessBend);
     CHECK(content.fit->start.widestField == someFit().start.widestField);
     CHECK(content.fit->start.errorMm == someFit().start.errorMm);
     CHECK(content.fit->clip.surfaces == someFit().clip.surfaces);

@@ -1,7 +1,5 @@
 #include "config/config.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <fstream>
 
@@ -84,7 +82,7 @@ void Config::replaceTable(std::string_view name, const Config& other,
                           const std::vector<std::string>& kept) {
     const ConfigNode* replacement = std::get<ConfigNode::Table>(other.root_->value).find(name);
     if (!replacement || !std::holds_alternative<ConfigNode::Table>(replacement->value))
-        other.root().fail("", fmt::format("expected a [{}] table", name));
+        other.root().fail("", "expected a [" + std::string(name) + "] table");
     ConfigNode table = *replacement;
     ConfigNode whole = *root_;
     auto& entries = std::get<ConfigNode::Table>(whole.value);

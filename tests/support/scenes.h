@@ -1,4 +1,4 @@
-// Scenes for tests, and the comparison of pictures by statistics.
+// Scenes for tests, and their pictures.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +7,7 @@
 
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
+#include "statistics/picture_comparison.h"
 #include "tests/support/temporary_folder.h"
 
 namespace etendue {
@@ -22,23 +23,5 @@ std::vector<float> renderPixels(const LoadedScene& loaded, std::uint32_t samples
 /// 0.
 std::vector<double> batchRadiances(const LoadedScene& loaded, Vec3 origin, Vec3 direction,
                                    int batches, int samples);
-
-/// Welch's t-test per tile of the means over seeds (Jung, Hanika and Dachsbacher 2020), corrected
-/// for the number of tiles, and the bias of the whole picture with its confidence interval.
-struct PictureComparison {
-    double smallestP = 1.0;              // over tiles; to be compared with `level`
-    double level = 0.0;                  // per tile, Šidák-corrected from 0.01 overall
-    double relativeBias = 0.0;           // (mean a − mean b) / mean b
-    double relativeBiasHalfWidth = 0.0;  // of its 99 % confidence interval
-    bool agree() const { return smallestP > level; }
-    /// The bias is below `bound` with 99 % confidence: agreement that noise cannot fake.
-    bool isEquivalent(double bound) const {
-        return std::abs(relativeBias) + relativeBiasHalfWidth < bound;
-    }
-};
-/// Each picture of `a` and `b` was rendered with a seed of its own; `width` in pixels.
-PictureComparison comparePictures(const std::vector<std::vector<float>>& a,
-                                  const std::vector<std::vector<float>>& b, int width,
-                                  int tileSize);
 
 }  // namespace etendue

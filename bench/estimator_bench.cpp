@@ -21,7 +21,8 @@ double median(std::vector<double> values) {
 }
 
 double secondsOf(const LoadedScene& loaded, const std::string& kind, std::uint32_t samples) {
-    Film film({loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height});
+    Film film({loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height},
+              {}, loaded.film.color);
     EstimatorSettings estimator = loaded.estimator;
     estimator.kind = kind;
     RenderSettings settings;

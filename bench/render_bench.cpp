@@ -72,7 +72,8 @@ double median(std::vector<double> values) {
 
 /// Seconds of one render of `samples` per pixel.
 double timeRender(const LoadedScene& loaded, std::uint32_t samples, int threads) {
-    Film film({loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height});
+    Film film({loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height},
+              {}, loaded.film.color);
     RenderSettings settings;
     settings.samples = samples;
     settings.threads = threads;

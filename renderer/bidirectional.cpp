@@ -30,9 +30,12 @@ struct Scratch {
 /// One sample: two walks and all that is made of them.
 class BidirectionalSample {
 public:
-    BidirectionalSample(const View& view, const EstimatorSettings& settings,
-                        const SampleCounts& counts, Sample& result, Scratch& scratch)
+    BidirectionalSample(const View& view, const SpectralSample& color,
+                        const EstimatorSettings& settings, const SampleCounts& counts,
+                        Sample& result, Scratch& scratch)
         : view_(view),
+          color_(color),
+          wavelengths_(color.wavelengths),
           settings_(settings),
           counts_(counts),
           result_(result),
@@ -43,8 +46,7 @@ public:
     }
 
     void walkFromCameraOf(CameraSample& sample) {
-        walkFromCamera(view_.scene, *sample.ray, sample.wavelengths, settings_, sample.random,
-                       camera_);
+        walkFromCamera(view_.scene, sample, settings_, camera_);
         camera_.vertices.front().density.isConnectable = isReachable(sample);
     }
 
@@ -57,10 +59,18 @@ public:
         for (std::size_t s = 1; s <= light_.vertices.size(); ++s) {
             const Vec2 apertureUniform = random.next2();
             if (!counts_.techniques.contains({static_cast<int>(s), 1})) continue;
-            if (s == 1)
-                connectEmissionToLens(apertureUniform);
-            else
-                connectVertexToLens(s, apertureUniform);
+            const PathVertex& y = light_.vertices[s - 1];
+            if (y.kind == PathVertex::Kind::surface && !canConnect(y)) continue;
+            // Behind a dispersive lens every wavelength lands in a place of its own.
+            const int connections = isParted(view_) ? Spectrum::lanes : 1;
+            for (lane_ = 0; lane_ < connections; ++lane_) {
+                if (y.kind == PathVertex::Kind::infinite)
+                    connectInfinityToLens(y, apertureUniform);
+                else if (s == 1)
+                    connectEmissionToLens(y, apertureUniform);
+                else
+                    connectVertexToLens(s, apertureUniform);
+            }
         }
     }
 
@@ -87,10 +97,10 @@ private:
         if (camera_.vertices.size() >= 2) {
             if (!canConnect(camera_.vertices[1])) return false;
             connection = view_.camera.connect(camera_.vertices[1].point.position,
-                                              sample.apertureUniform, sample.wavelengths);
+                                              sample.apertureUniform, wavelengths_, lane_);
         } else if (camera_.escape) {
-            connection = view_.camera.connectToInfinity(camera_.escape->direction,
-                                                        sample.apertureUniform, sample.wavelengths);
+            connection = view_.camera.connectToInfinity(
+                camera_.escape->direction, sample.apertureUniform, wavelengths_, lane_);
         }
         return connection && std::abs(connection->film.x - sample.film.x) < tolerance &&
                std::abs(connection->film.y - sample.film.y) < tolerance;
@@ -120,13 +130,17 @@ private:
 
     void add(std::size_t s, std::size_t t, const Spectrum& value, float weight) {
         result_.contributions.push_back({.technique = {static_cast<int>(s), static_cast<int>(t)},
-                                         .value = value,
+                                         .value = color_.onFilm(value),
                                          .weight = weight,
                                          .film = film_});
     }
     void splat(std::size_t s, Vec2 film, const Spectrum& value, float weight) {
+        const Spectrum landing =
+            isParted(view_)
+                ? Spectrum::fromLanes([&](int i) { return i == lane_ ? value[i] : 0.0f; })
+                : value;
         result_.contributions.push_back({.technique = {static_cast<int>(s), 1},
-                                         .value = value,
+                                         .value = color_.onFilm(landing),
                                          .weight = weight,
                                          .film = film,
                                          .isSplat = true});
@@ -145,7 +159,7 @@ private:
         const EmitterHit hit{-end.wo, length(end.point.position - before.point.position),
                              end.point.geometricNormal};
         const Light& light = view_.scene.lights()[end.point.light];
-        const Spectrum radiance = light.radiance(hit);
+        const Spectrum radiance = wavelengths_.lanesOf(light.radiance(hit));
         if (isBlack(radiance)) return;
         const float probability = view_.scene.lights().probability(end.point.light);
         const EmissionPdf emission = light.emissionPdf(hit);
@@ -168,7 +182,7 @@ private:
                              -escape.direction};
         for (const int index : view_.scene.lights().infiniteLights()) {
             const Light& light = view_.scene.lights()[index];
-            const Spectrum radiance = light.radiance(hit);
+            const Spectrum radiance = wavelengths_.lanesOf(light.radiance(hit));
             if (isBlack(radiance)) continue;
             const EmissionPdf emission = light.emissionPdf(hit);
             JoinDensities join;
@@ -211,7 +225,8 @@ private:
                                             : densityAt(end, onLight, emission.pdfSolidAngle);
         join.beforeCameraEnd =
             densityAt(camera_.vertices[t - 2], end, scattering.pdfSolidAngleReverse);
-        add(1, t, end.throughput * scattering.value * sample->radiance / lightPdf,
+        add(1, t,
+            end.throughput * scattering.value * wavelengths_.lanesOf(sample->radiance) / lightPdf,
             weightOf(cameraVertices(t), Vertices(&onLight, 1), join));
     }
 
@@ -250,9 +265,8 @@ private:
     /// s ≥ 2, t = 1.
     void connectVertexToLens(std::size_t s, Vec2 apertureUniform) {
         const PathVertex& y = light_.vertices[s - 1];
-        if (!canConnect(y)) return;
         const auto connection =
-            view_.camera.connect(y.point.position, apertureUniform, wavelengths_);
+            view_.camera.connect(y.point.position, apertureUniform, wavelengths_, lane_);
         if (!connection || !isOnFilm(connection->film)) return;
         const Vec3 toLens = -connection->ray.direction;
         const Scattering scattering =
@@ -268,22 +282,17 @@ private:
     }
 
     /// s = 1, t = 1: the light itself through the lens.
-    void connectEmissionToLens(Vec2 apertureUniform) {
-        const PathVertex& y = light_.vertices.front();
-        if (y.kind == PathVertex::Kind::infinite) {
-            connectInfinityToLens(y, apertureUniform);
-            return;
-        }
+    void connectEmissionToLens(const PathVertex& y, Vec2 apertureUniform) {
         const auto connection =
-            view_.camera.connect(y.point.position, apertureUniform, wavelengths_);
+            view_.camera.connect(y.point.position, apertureUniform, wavelengths_, lane_);
         if (!connection || !isOnFilm(connection->film)) return;
         const CameraRay& ray = connection->ray;
         const Light& light = view_.scene.lights()[light_.light];
         const bool isPoint = y.kind == PathVertex::Kind::point;
         const Vec3 normal = isPoint ? ray.direction : y.point.geometricNormal;
-        const Spectrum emitted =
+        const Spectrum emitted = wavelengths_.lanesOf(
             isPoint ? intensityToward(light, ray.origin, connection->distance)
-                    : light.radiance({ray.direction, connection->distance, normal});
+                    : light.radiance({ray.direction, connection->distance, normal}));
         if (isBlack(emitted) || !isLensVisible(y.point, ray)) return;
         JoinDensities join;
         join.lightEnd = isPoint ? 0.0f : pdfArea(ray, connection->distance, normal);
@@ -293,7 +302,8 @@ private:
     }
 
     void connectInfinityToLens(const PathVertex& y, Vec2 apertureUniform) {
-        const auto connection = view_.camera.connectToInfinity(y.wo, apertureUniform, wavelengths_);
+        const auto connection =
+            view_.camera.connectToInfinity(y.wo, apertureUniform, wavelengths_, lane_);
         if (!connection || !isOnFilm(connection->film)) return;
         const CameraRay& ray = connection->ray;
         if (!view_.scene.isVisibleToInfinity(ray.origin, ray.direction)) return;
@@ -332,15 +342,17 @@ private:
     }
 
     const View& view_;
+    const SpectralSample& color_;
+    const Wavelengths& wavelengths_;
     const EstimatorSettings& settings_;
     const SampleCounts& counts_;
     Sample& result_;
-    Wavelengths wavelengths_;
     CameraSubpath& camera_;
     LightSubpath& light_;
     std::vector<VertexDensity>& path_;
     PathVertex lens_ = connectableLens();
     Vec2 film_;
+    int lane_ = 0;  // whose connection to the lens is being made
 };
 
 class Bidirectional final : public Estimator {
@@ -356,10 +368,14 @@ public:
         result.contributions.clear();
         result.firstHit.reset();
         const CameraSettings& frame = view.camera.settings();
+        // Connections to a dispersive lens are made at each wavelength, paths from it at one of
+        // four.
+        const double lanes = isParted(view) ? Spectrum::lanes : 1.0;
         const SampleCounts counts{techniques_,
-                                  1.0 * settings_.lightPaths * frame.width * frame.height};
+                                  lanes * settings_.lightPaths * frame.width * frame.height};
+        const SpectralSample color = drawWavelengths(view, id);
         static thread_local Scratch scratch;
-        BidirectionalSample sample(view, settings_, counts, result, scratch);
+        BidirectionalSample sample(view, color, settings_, counts, result, scratch);
         // The last light path is the one that the camera's is connected to.
         for (int i = 0; i < lightPathsPerSample(); ++i) {
             const auto path = static_cast<std::uint32_t>(i);
@@ -373,8 +389,7 @@ public:
         if (!needsCamera_ && !request.firstHit) return;
         CameraSample camera = drawCameraSample(view, id);
         if (!camera.ray) return;
-        if (request.firstHit)
-            result.firstHit = firstHitOf(view.scene, *camera.ray, camera.wavelengths);
+        if (request.firstHit) result.firstHit = firstHitOf(view.scene, *camera.ray);
         if (!needsCamera_) return;
         sample.walkFromCameraOf(camera);
         sample.connectSubpaths(camera, camera.random);

@@ -16,6 +16,7 @@
 
 #include "renderer/spectrum.h"
 #include "renderer/vec.h"
+#include "renderer/wavelengths.h"
 
 namespace etendue {
 

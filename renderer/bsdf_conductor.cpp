@@ -31,10 +31,12 @@ public:
 
     BsdfValue evaluate(const BsdfContext&, Vec3, Vec3) const override { return {}; }
 
-    std::optional<BsdfSample> sample(const BsdfContext&, Vec3 wo, float, Vec2) const override {
+    std::optional<BsdfSample> sample(const BsdfContext& context, Vec3 wo, float,
+                                     Vec2) const override {
         if (isInSurface(wo)) return std::nullopt;
-        return diracSample({-wo.x, -wo.y, wo.z},
-                           reflectance(facet_, std::min(std::abs(wo.z), 1.0f)), 1.0f, 1.0f);
+        const Spectrum reflected = reflectance(facet_, std::min(std::abs(wo.z), 1.0f));
+        return diracSample({-wo.x, -wo.y, wo.z}, context.wavelengths.lanesOf(reflected), 1.0f,
+                           1.0f);
     }
 
     bool isDirac() const override { return true; }
@@ -55,7 +57,7 @@ public:
           multipleScattering_(multipleScatteringColor(albedo_, loss_.average())),
           lobeScale_(inversePi / loss_.average()) {}
 
-    BsdfValue evaluate(const BsdfContext&, Vec3 wo, Vec3 wi) const override {
+    BsdfValue evaluate(const BsdfContext& context, Vec3 wo, Vec3 wi) const override {
         if (wo.z < 0.0f) {
             wo = flipped(wo);
             wi = flipped(wi);
@@ -72,6 +74,7 @@ public:
             value.pdfSolidAngle += (1.0f - lossO) * density * ggx_.g1OverCosine(wo);
             value.pdfSolidAngleReverse += (1.0f - lossI) * density * ggx_.g1OverCosine(wi);
         }
+        value.f = context.wavelengths.lanesOf(value.f);
         return value;
     }
 

@@ -37,8 +37,9 @@ public:
         if (uLobe < reflected)
             return diracSample({-wo.x, -wo.y, wo.z}, Spectrum(1.0f), reflected, reflected);
         const Vec3 wi = {-wo.x / eta, -wo.y / eta, -std::copysign(cosTransmitted, wo.z)};
-        return diracSample(wi, tint_ * transportFactor(context.transport, eta), 1.0f - reflected,
-                           1.0f - reflected);
+        return diracSample(
+            wi, context.wavelengths.lanesOf(tint_) * transportFactor(context.transport, eta),
+            1.0f - reflected, 1.0f - reflected);
     }
 
     bool isDirac() const override { return true; }
@@ -94,8 +95,9 @@ public:
             value.pdfSolidAngleReverse +=
                 (1.0f - lossI) * density * facet->transferReverse * ggx_.g1OverCosine(wi);
         }
-        value.f =
-            isReflected ? Spectrum(f) : tint_ * (f * transportFactor(context.transport, sideO.eta));
+        value.f = isReflected ? Spectrum(f)
+                              : context.wavelengths.lanesOf(tint_) *
+                                    (f * transportFactor(context.transport, sideO.eta));
         return value;
     }
 

@@ -12,7 +12,7 @@ public:
 
     BsdfValue evaluate(const BsdfContext& context, Vec3 wo, Vec3 wi) const override {
         if (isInSurface(wo) || isInSurface(wi) || (wo.z > 0.0f) != (wi.z > 0.0f)) return {};
-        return {reflectance_.color(context.uv) * inversePi, std::abs(wi.z) * inversePi,
+        return {albedo(context) * inversePi, std::abs(wi.z) * inversePi,
                 std::abs(wo.z) * inversePi};
     }
 
@@ -25,7 +25,7 @@ public:
 
     bool isDirac() const override { return false; }
     Spectrum albedo(const BsdfContext& context) const override {
-        return reflectance_.color(context.uv);
+        return context.wavelengths.lanesOf(reflectance_.color(context.uv));
     }
 
 private:

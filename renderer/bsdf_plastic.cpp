@@ -29,8 +29,8 @@ public:
           leaving_(std::min(1.0f, averageTransmittance / (ior * ior))) {}
 
     /// Of the light that got in, the share that comes out.
-    Spectrum albedo(Vec2 uv) const {
-        const Spectrum rho = reflectance_.color(uv);
+    Spectrum albedo(const BsdfContext& context) const {
+        const Spectrum rho = context.wavelengths.lanesOf(reflectance_.color(context.uv));
         return rho * leaving_ / (Spectrum(1.0f) - rho * (1.0f - leaving_));
     }
     Spectrum f(const Spectrum& albedo, float transmittanceO, float transmittanceI) const {
@@ -61,7 +61,7 @@ public:
         if (isInSurface(wo) || isInSurface(wi) || (wo.z > 0.0f) != (wi.z > 0.0f)) return {};
         const float cosO = std::abs(wo.z), cosI = std::abs(wi.z);
         const float throughO = transmittance(cosO), throughI = transmittance(cosI);
-        const Spectrum albedo = base_.albedo(context.uv);
+        const Spectrum albedo = base_.albedo(context);
         return {base_.f(albedo, throughO, throughI),
                 (1.0f - coatProbability(throughO, albedo)) * cosI * inversePi,
                 (1.0f - coatProbability(throughI, albedo)) * cosO * inversePi};
@@ -71,7 +71,7 @@ public:
                                      Vec2 u) const override {
         if (isInSurface(wo)) return std::nullopt;
         const float through = transmittance(std::abs(wo.z));
-        const float coat = coatProbability(through, base_.albedo(context.uv));
+        const float coat = coatProbability(through, base_.albedo(context));
         if (uLobe < coat)
             return diracSample({-wo.x, -wo.y, wo.z}, Spectrum((1.0f - through) / coat), coat, coat);
         Vec3 wi = sampleCosineHemisphere(u);
@@ -82,7 +82,7 @@ public:
     bool isDirac() const override { return false; }
     Spectrum albedo(const BsdfContext& context) const override {
         return Spectrum(1.0f - averageTransmittance_) +
-               base_.albedo(context.uv) * averageTransmittance_;
+               base_.albedo(context) * averageTransmittance_;
     }
 
 private:
@@ -109,7 +109,7 @@ public:
         }
         if (isInSurface(wo) || isInSurface(wi) || wi.z < 0.0f) return {};
         const float throughO = transmittance_.at(wo.z), throughI = transmittance_.at(wi.z);
-        const Spectrum albedo = base_.albedo(context.uv);
+        const Spectrum albedo = base_.albedo(context);
         const float coatO = coatProbability(throughO, albedo);
         const float coatI = coatProbability(throughI, albedo);
         BsdfValue value{base_.f(albedo, throughO, throughI), (1.0f - coatO) * wi.z * inversePi,
@@ -128,7 +128,7 @@ public:
                                      Vec2 u) const override {
         if (isInSurface(wo)) return std::nullopt;
         const Vec3 above = upward(wo);
-        const float coat = coatProbability(transmittance_.at(above.z), base_.albedo(context.uv));
+        const float coat = coatProbability(transmittance_.at(above.z), base_.albedo(context));
         const Vec3 wi = uLobe < coat ? reflect(above, ggx_.sampleVisibleNormal(above, u))
                                      : sampleCosineHemisphere(u);
         if (!(wi.z > 0.0f)) return std::nullopt;
@@ -138,7 +138,7 @@ public:
     bool isDirac() const override { return false; }
     Spectrum albedo(const BsdfContext& context) const override {
         return Spectrum(1.0f - transmittance_.average()) +
-               base_.albedo(context.uv) * transmittance_.average();
+               base_.albedo(context) * transmittance_.average();
     }
 
 private:

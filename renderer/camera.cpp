@@ -96,16 +96,18 @@ std::optional<CameraRay> Camera::sampleRay(Vec2 film, Vec2 apertureUniform,
                                            const Wavelengths& wavelengths) const {
     const SensorPoint sensor{sensorPointMm(settings_, film)};
     const AperturePoint aperture = lens_->sampleAperture(toEigen(apertureUniform));
-    const std::optional<ExitRay> exit = lens_->trace(sensor, aperture, wavelengths.heroNm());
+    const std::optional<ExitRay> exit =
+        lens_->trace(sensor, aperture, wavelengthNm(wavelengths, 0));
     if (!exit) return {};
     return worldRay(*exit);
 }
 
 std::optional<CameraConnection> Camera::connect(Vec3 scenePoint, Vec2 apertureUniform,
-                                                const Wavelengths& wavelengths) const {
+                                                const Wavelengths& wavelengths, int lane) const {
     const Vec3d target = lensFromWorld_.point(toDouble(scenePoint)) / metresPerMm;
     const Eigen::Vector3d targetMm(target.x, target.y, target.z);
-    const std::optional<Seen> seen = see(targetMm, apertureUniform, wavelengths);
+    const std::optional<Seen> seen =
+        see(targetMm, apertureUniform, wavelengthNm(wavelengths, lane));
     if (!seen) return {};
     const CameraConnection connection{
         .film = seen->film,
@@ -118,12 +120,13 @@ std::optional<CameraConnection> Camera::connect(Vec3 scenePoint, Vec2 apertureUn
 }
 
 std::optional<CameraConnection> Camera::connectToInfinity(Vec3 direction, Vec2 apertureUniform,
-                                                          const Wavelengths& wavelengths) const {
+                                                          const Wavelengths& wavelengths,
+                                                          int lane) const {
     // So far away that a lens's size is an angle below a float's rounding.
     constexpr double farMm = 1e12;
     const Vec3d target = lensFromWorld_.vector(toDouble(direction)) * farMm;
     const std::optional<Seen> seen =
-        see({target.x, target.y, target.z}, apertureUniform, wavelengths);
+        see({target.x, target.y, target.z}, apertureUniform, wavelengthNm(wavelengths, lane));
     if (!seen) return {};
     const CameraConnection connection{.film = seen->film,
                                       .ray = worldRay(seen->exit),
@@ -132,15 +135,19 @@ std::optional<CameraConnection> Camera::connectToInfinity(Vec3 direction, Vec2 a
     return connection;
 }
 
+double Camera::wavelengthNm(const Wavelengths& wavelengths, int lane) const {
+    return settings_.isDispersive ? wavelengths.nm[static_cast<std::size_t>(lane)]
+                                  : Wavelengths::rgbWavelengthNm;
+}
+
 std::optional<Camera::Seen> Camera::see(const Eigen::Vector3d& targetMm, Vec2 apertureUniform,
-                                        const Wavelengths& wavelengths) const {
+                                        double nm) const {
     const AperturePoint aperture = lens_->sampleAperture(toEigen(apertureUniform));
-    const std::optional<SensorPoint> sensor =
-        lens_->connect(targetMm, aperture, wavelengths.heroNm());
+    const std::optional<SensorPoint> sensor = lens_->connect(targetMm, aperture, nm);
     if (!sensor) return {};
     // The very ray that sampleRay would make, so that both directions share one weight and one
     // footprint.
-    const std::optional<ExitRay> exit = lens_->trace(*sensor, aperture, wavelengths.heroNm());
+    const std::optional<ExitRay> exit = lens_->trace(*sensor, aperture, nm);
     if (!exit) return {};
     const Eigen::Vector2d film =
         (sensor->mm - settings_.sensorOffsetMm) / pixelMm_ + filmCenter(settings_);  // (3)

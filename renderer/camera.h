@@ -11,6 +11,7 @@
 #include "renderer/surface_point.h"
 #include "renderer/transform.h"
 #include "renderer/vec.h"
+#include "renderer/wavelengths.h"
 
 namespace etendue {
 
@@ -39,6 +40,8 @@ struct CameraSettings {
     Eigen::Vector2d sensorOffsetMm = {0.0, 0.0};  // of the frame's centre from the lens' axis
     Transform worldFromLens;                      // rotation and translation; lens axes in metres
     double exposureStops = 0.0;                   // the picture times 2^stops
+    /// The lens is asked at each wavelength; else at Wavelengths::rgbWavelengthNm alone.
+    bool isDispersive = false;
 };
 
 /// Where `film` (pixels, full frame) lies on the sensor, from the lens' axis.
@@ -51,21 +54,24 @@ public:
     Camera(std::shared_ptr<const LensModel> lens, const CameraSettings& settings);
 
     /// The ray from film point `film` (pixels, full frame; need not lie inside it) through the
-    /// aperture point that `apertureUniform` draws. Empty when the lens blocks it.
+    /// aperture point that `apertureUniform` draws, at the hero wavelength: a dispersive lens sends
+    /// the others elsewhere. Empty when the lens blocks it.
     std::optional<CameraRay> sampleRay(Vec2 film, Vec2 apertureUniform,
                                        const Wavelengths& wavelengths) const;
 
-    /// The film point from which the ray through that same aperture point meets `scenePoint`. Empty
+    /// The film point from which the ray through that same aperture point meets `scenePoint`, at
+    /// the wavelength of `lane`. Empty
     /// when there is none, and on an image of the aperture point, where every film point would do.
     /// The importance of the connection is ray.weight · pdfArea(ray, …), exactly equation (1) after
     /// the change of variables from film to scene.
     std::optional<CameraConnection> connect(Vec3 scenePoint, Vec2 apertureUniform,
-                                            const Wavelengths& wavelengths) const;
+                                            const Wavelengths& wavelengths, int lane = 0) const;
 
     /// The same for a point at infinity in the unit `direction`; the connection's distance is
     /// infinite, its importance ray.weight · pdfSolidAngle(ray).
     std::optional<CameraConnection> connectToInfinity(Vec3 direction, Vec2 apertureUniform,
-                                                      const Wavelengths& wavelengths) const;
+                                                      const Wavelengths& wavelengths,
+                                                      int lane = 0) const;
 
     const CameraSettings& settings() const { return settings_; }
     Vec3 position() const;  // of the lens origin, world
@@ -76,8 +82,8 @@ private:
         Vec2 film;
         ExitRay exit;
     };
-    std::optional<Seen> see(const Eigen::Vector3d& targetMm, Vec2 apertureUniform,
-                            const Wavelengths& wavelengths) const;
+    std::optional<Seen> see(const Eigen::Vector3d& targetMm, Vec2 apertureUniform, double nm) const;
+    double wavelengthNm(const Wavelengths& wavelengths, int lane) const;
     CameraRay worldRay(const ExitRay& exit) const;
 
     std::shared_ptr<const LensModel> lens_;

@@ -25,24 +25,37 @@ std::uint32_t pixelIndex(const View& view, SampleId id) {
            static_cast<std::uint32_t>(id.x);
 }
 
+bool isParted(const View& view) { return view.isSpectral && view.camera.settings().isDispersive; }
+
+SpectralSample drawWavelengths(const View& view, SampleId id) {
+    if (!view.isSpectral) return {};
+    RandomStream random(id.seed, pixelIndex(view, id), id.sample, RandomDomain::wavelength);
+    return sampleWavelengths(random.next());
+}
+
 CameraSample drawCameraSample(const View& view, SampleId id) {
     CameraSample result{.random = RandomStream(id.seed, pixelIndex(view, id), id.sample),
-                        .wavelengths = {},
+                        .color = drawWavelengths(view, id),
                         .film = {},
                         .apertureUniform = {},
-                        .ray = {}};
+                        .ray = {},
+                        .throughput = {}};
     const Vec2 center{static_cast<float>(id.x) + 0.5f, static_cast<float>(id.y) + 0.5f};
     result.film = center + view.filter.sample(result.random.next2());
     result.apertureUniform = result.random.next2();
-    result.ray = view.camera.sampleRay(result.film, result.apertureUniform, result.wavelengths);
+    result.ray =
+        view.camera.sampleRay(result.film, result.apertureUniform, result.color.wavelengths);
+    if (!result.ray) return result;
+    const float weight = result.ray->weight;
+    result.throughput =
+        isParted(view) ? Spectrum(Spectrum::lanes * weight, 0.0f, 0.0f, 0.0f) : Spectrum(weight);
     return result;
 }
 
-std::optional<FirstHit> firstHitOf(const Scene& scene, const CameraRay& ray,
-                                   const Wavelengths& wavelengths) {
+std::optional<FirstHit> firstHitOf(const Scene& scene, const CameraRay& ray) {
     const std::optional<SurfacePoint> point = scene.closestHit({ray.origin, ray.direction});
     if (!point) return {};
-    const BsdfContext context{point->uv, Transport::radiance, wavelengths};
+    const BsdfContext context{point->uv, Transport::radiance, {}};  // as RGB, in any scene
     return FirstHit{*point, point->material->bsdf->albedo(context),
                     length(point->position - ray.origin)};
 }

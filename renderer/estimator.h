@@ -31,6 +31,7 @@ struct View {
     const Scene& scene;
     const Camera& camera;
     const Filter& filter;
+    bool isSpectral = false;
 };
 
 /// Names a sample, whose numbers can be had again from it. Light paths belong to the sample of a
@@ -51,7 +52,7 @@ struct FirstHit {
 /// The part of a sample that one technique found.
 struct Contribution {
     Technique technique;  // s = t = 0 for path tracing, which has none
-    Spectrum value;       // pixel value, not weighted yet
+    Spectrum value;       // what the film adds (SpectralSample::onFilm), not weighted yet
     float weight = 1.0f;  // of multiple importance sampling
     Vec2 film;            // of a splat: pixels of the full frame
     bool isSplat = false;
@@ -86,15 +87,21 @@ public:
 /// estimator. No ray where the lens blocks it.
 struct CameraSample {
     RandomStream random;  // the rest of its numbers
-    Wavelengths wavelengths;
+    SpectralSample color;
     Vec2 film, apertureUniform;
     std::optional<CameraRay> ray;
+    /// The ray's weight, in the lanes that travel along it: behind a dispersive lens the hero's
+    /// alone, which stands for all four.
+    Spectrum throughput;
 };
 CameraSample drawCameraSample(const View& view, SampleId id);
+/// The wavelengths of a sample, of its camera path and its light paths alike.
+SpectralSample drawWavelengths(const View& view, SampleId id);
+/// Whether each wavelength goes through the lens on a way of its own.
+bool isParted(const View& view);
 
 /// What `ray` meets first.
-std::optional<FirstHit> firstHitOf(const Scene& scene, const CameraRay& ray,
-                                   const Wavelengths& wavelengths);
+std::optional<FirstHit> firstHitOf(const Scene& scene, const CameraRay& ray);
 
 /// The number of random stream that belongs to a pixel.
 std::uint32_t pixelIndex(const View& view, SampleId id);

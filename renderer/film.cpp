@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "renderer/colorimetry.h"
+
 namespace etendue {
 
 namespace {
@@ -42,6 +44,10 @@ double varianceOfMean(double sum, double sumOfSquares, double n) {
 
 }  // namespace
 
+Vec3d rgbOf(FilmColor color, Vec3d sum) {
+    return color == FilmColor::xyz ? rec709FromXyz(sum) : sum;
+}
+
 bool isUsable(const Spectrum& value) { return isUsable(firstLanes(value)); }
 
 Film::Slots Film::slotsFor(const FilmLayers& layers) {
@@ -60,8 +66,8 @@ Film::Slots Film::slotsFor(const FilmLayers& layers) {
     return slots;
 }
 
-Film::Film(const FrameWindow& window, const FilmLayers& layers)
-    : window_(window), layers_(layers), slots_(slotsFor(layers)) {
+Film::Film(const FrameWindow& window, const FilmLayers& layers, FilmColor color)
+    : window_(window), layers_(layers), color_(color), slots_(slotsFor(layers)) {
     const auto isInside = [](int from, int size, int full) {
         return from >= 0 && size > 0 && size <= full && from <= full - size;
     };
@@ -123,7 +129,7 @@ bool Film::addFeatures(int x, int y, const FilmFeatures& features) {
 }
 
 void Film::merge(const Film& other) {
-    if (!sameWindow(window_, other.window_) || layers_ != other.layers_)
+    if (!sameWindow(window_, other.window_) || layers_ != other.layers_ || color_ != other.color_)
         throw std::invalid_argument("film: merged renders must share window and layers");
     std::transform(state_.sums.begin(), state_.sums.end(), other.state_.sums.begin(),
                    state_.sums.begin(), std::plus<>());
@@ -163,16 +169,23 @@ std::vector<ExrChannels> Film::channels() const {
     };
 
     const auto lightPaths = static_cast<double>(state_.lightPaths);
-    addImage({"R", "G", "B"}, [&](const double* sums, int i) {
-        const double own = mean(sums[i], n);
-        if (state_.splatSums.empty()) return own;
-        const auto pixel = static_cast<std::size_t>(sums - state_.sums.data()) / stride;
-        return own + mean(state_.splatSums[3 * pixel + static_cast<std::size_t>(i)], lightPaths);
+    addImage({"R", "G", "B"}, [&](const double* sums, int channel) {
+        Vec3d value = Vec3d{sums[0], sums[1], sums[2]} * mean(1.0, n);
+        if (!state_.splatSums.empty()) {
+            const double* splats =
+                &state_
+                     .splatSums[3 * (static_cast<std::size_t>(sums - state_.sums.data()) / stride)];
+            value += Vec3d{splats[0], splats[1], splats[2]} * mean(1.0, lightPaths);
+        }
+        return rgbOf(color_, value)[channel];
     });
     if (layers_.variance)
-        addImage({"variance.R", "variance.G", "variance.B"}, [&](const double* sums, int i) {
-            return varianceOfMean(sums[i], sums[slots_.squares + i], n);
-        });
+        addImage(color_ == FilmColor::xyz
+                     ? std::vector<std::string>{"variance.X", "variance.Y", "variance.Z"}
+                     : std::vector<std::string>{"variance.R", "variance.G", "variance.B"},
+                 [&](const double* sums, int i) {
+                     return varianceOfMean(sums[i], sums[slots_.squares + i], n);
+                 });
     if (layers_.albedo) addImage({"albedo.R", "albedo.G", "albedo.B"}, overSamples(slots_.albedo));
     if (layers_.normal) addImage({"normal.X", "normal.Y", "normal.Z"}, overHits(slots_.normal));
     if (layers_.depth) addImage({"depth.Z"}, overHits(slots_.depth));

@@ -19,7 +19,8 @@ struct FilmLayers {
     bool normal = false;
     bool depth = false;
     bool position = false;
-    bool variance = false;  // of the pixel's mean, estimated from the spread of its samples
+    bool variance = false;  // of the pixel's mean, estimated from the spread of its samples; of a
+                            // spectral film that of X, Y and Z
 
     friend bool operator==(const FilmLayers&, const FilmLayers&) = default;
 };
@@ -41,6 +42,13 @@ struct FilmState {
     std::uint64_t badSamples = 0;
 };
 
+/// What a film's sums are: R, G, B, or of a spectral render X, Y, Z, which are never negative, as
+/// the response of R, G or B to a single wavelength may be. Its pictures are RGB in either case.
+enum class FilmColor { rgb, xyz };
+
+/// Linear Rec. 709 of a sum.
+Vec3d rgbOf(FilmColor color, Vec3d sum);
+
 /// Whether a film would take the value: finite, and not negative.
 bool isUsable(const Spectrum& value);
 
@@ -49,7 +57,8 @@ bool isUsable(const Spectrum& value);
 class Film {
 public:
     /// Throws std::invalid_argument unless the window has pixels and lies in the full frame.
-    explicit Film(const FrameWindow& window, const FilmLayers& layers = {});
+    explicit Film(const FrameWindow& window, const FilmLayers& layers = {},
+                  FilmColor color = FilmColor::rgb);
 
     /// Adds one sample's first three lanes. One that is negative or not finite is counted, left
     /// out, and reported by `false`.
@@ -81,6 +90,7 @@ public:
 
     const FrameWindow& window() const { return window_; }
     const FilmLayers& layers() const { return layers_; }
+    FilmColor color() const { return color_; }
     const FilmState& state() const { return state_; }
     std::uint64_t samples() const { return state_.samples; }
     std::uint64_t badSamples() const { return state_.badSamples; }
@@ -99,6 +109,7 @@ private:
 
     FrameWindow window_;
     FilmLayers layers_;
+    FilmColor color_;
     Slots slots_;
     FilmState state_;
 };

@@ -112,6 +112,9 @@ std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, const Camera
         filmPoints * (camera.sensorWidthMm / camera.width) + 2.0 * camera.sensorOffsetMm.cwiseAbs();
     request.focusDistanceMm = settings.focusDistanceMm;
     request.fNumber = settings.fNumber;
+    constexpr double rgbNm = Wavelengths::rgbWavelengthNm;
+    request.shortestWavelengthNm = camera.isDispersive ? Wavelengths::shortestNm : rgbNm;
+    request.longestWavelengthNm = camera.isDispersive ? Wavelengths::longestNm : rgbNm;
     const FitDomain domain = fitDomain(prescription, request);
     const auto notice = [&](const std::string& sentence) { loading.notes.push_back(sentence); };
     const LensFit fit =

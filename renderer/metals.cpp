@@ -6,6 +6,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "renderer/colorimetry.h"
 #include "renderer/vec.h"
 
 namespace etendue {
@@ -71,33 +72,6 @@ double normalReflectance(OpticalConstants c) {
     return (squared(c.eta - 1) + squared(c.k)) / (squared(c.eta + 1) + squared(c.k));
 }
 
-constexpr double firstNm = 380.0, stepNm = 10.0;
-/// CIE standard illuminant D65 (ISO 11664-2), 380 … 780 nm.
-constexpr std::array d65{49.9755, 54.6482, 82.7549, 91.4860, 93.4318, 86.6823, 104.865,
-                         117.008, 117.812, 114.861, 115.923, 108.811, 109.354, 107.802,
-                         104.790, 107.689, 104.405, 104.046, 100.000, 96.3342, 95.7880,
-                         88.6856, 90.0062, 89.5991, 87.6987, 83.2886, 83.6992, 80.0268,
-                         80.2146, 82.2778, 78.2842, 69.7213, 71.6091, 74.3490, 61.6040,
-                         69.8856, 75.0870, 63.5927, 46.4182, 66.8054, 63.3828};
-
-/// CIE 1931 colour matching functions (Wyman, Sloan and Shirley 2013, "Simple Analytic
-/// Approximations to the CIE XYZ Color Matching Functions").
-Vec3d xyzMatching(double nm) {
-    const auto lobe = [nm](double center, double below, double above) {
-        return std::exp(-0.5 * squared((nm - center) / (nm < center ? below : above)));
-    };
-    return {1.056 * lobe(599.8, 37.9, 31.0) + 0.362 * lobe(442.0, 16.0, 26.7) -
-                0.065 * lobe(501.1, 20.4, 26.2),
-            0.821 * lobe(568.8, 46.9, 40.5) + 0.286 * lobe(530.9, 16.3, 31.1),
-            1.217 * lobe(437.0, 11.8, 36.0) + 0.681 * lobe(459.0, 26.0, 13.8)};
-}
-
-Vec3d rec709FromXyz(Vec3d c) {
-    return {3.2404542 * c.x - 1.5371385 * c.y - 0.4985314 * c.z,
-            -0.9692660 * c.x + 1.8760108 * c.y + 0.0415560 * c.z,
-            0.0556434 * c.x - 0.2040259 * c.y + 1.0572252 * c.z};
-}
-
 struct RgbOptics {
     Vec3d reflectance, eta;
 };
@@ -105,11 +79,10 @@ struct RgbOptics {
 RgbOptics averageOverLanes(std::span<const Measurement> table) {
     Vec3d reflected, white, eta, weight;
     double brightest = 0.0;
-    for (std::size_t i = 0; i < d65.size(); ++i) {
-        const double nm = firstNm + stepNm * static_cast<double>(i);
+    for (double nm = 380.0; nm <= 780.0; nm += 10.0) {
         const OpticalConstants constants = interpolate(table, nm);
         const double reflectance = normalReflectance(constants);
-        const Vec3d lane = rec709FromXyz(xyzMatching(nm)) * d65[i];
+        const Vec3d lane = rec709FromXyz(xyzMatching(nm)) * d65(nm);
         reflected += lane * reflectance;
         white += lane;
         const Vec3d positive = max(lane, Vec3d{});

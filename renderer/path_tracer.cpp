@@ -55,7 +55,7 @@ private:
         const EmitterHit hit{ray.direction, length(point.position - ray.origin),
                              point.geometricNormal};
         const Light& light = lights[point.light];
-        const Spectrum radiance = light.radiance(hit);
+        const Spectrum radiance = wavelengths_.lanesOf(light.radiance(hit));
         if (!pdfSolidAngle || isBlack(radiance)) return radiance;
         const float lightPdf = lights.probability(point.light) * light.pdfSolidAngle(hit);
         return radiance * balanceWeight(*pdfSolidAngle, lightPdf);
@@ -66,7 +66,7 @@ private:
         const LightTable& lights = scene_.lights();
         const EmitterHit hit{ray.direction, std::numeric_limits<float>::infinity(), -ray.direction};
         for (const int index : lights.infiniteLights()) {
-            const Spectrum radiance = lights[index].radiance(hit);
+            const Spectrum radiance = wavelengths_.lanesOf(lights[index].radiance(hit));
             if (!pdfSolidAngle || isBlack(radiance)) {
                 sum += radiance;
                 continue;
@@ -91,7 +91,7 @@ private:
         const float lightPdf = choice->probability * sample->pdfSolidAngle;
         const float weight =
             sample->isDirac ? 1.0f : balanceWeight(lightPdf, scattering.pdfSolidAngle);
-        return scattering.value * sample->radiance * (weight / lightPdf);
+        return scattering.value * wavelengths_.lanesOf(sample->radiance) * (weight / lightPdf);
     }
 
     bool survivesRoulette(Spectrum& throughput, int depth) {
@@ -120,13 +120,13 @@ public:
         if (!request.ownPixel) return;
         CameraSample camera = drawCameraSample(view, id);
         if (!camera.ray) return;
-        if (request.firstHit)
-            result.firstHit = firstHitOf(view.scene, *camera.ray, camera.wavelengths);
+        if (request.firstHit) result.firstHit = firstHitOf(view.scene, *camera.ray);
         const Spectrum radiance =
             pathTracedRadiance(view.scene, {camera.ray->origin, camera.ray->direction},
-                               camera.wavelengths, settings_, camera.random);
-        result.contributions.push_back(
-            {.technique = {}, .value = radiance * camera.ray->weight, .film = camera.film});
+                               camera.color.wavelengths, settings_, camera.random);
+        result.contributions.push_back({.technique = {},
+                                        .value = camera.color.onFilm(radiance * camera.throughput),
+                                        .film = camera.film});
     }
 
 private:

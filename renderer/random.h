@@ -37,7 +37,7 @@ constexpr float uniformFloat(std::uint32_t bits) {
 
 /// What a stream of numbers is used for, so that camera and light paths of equal index are
 /// independent.
-enum class RandomDomain : std::uint32_t { cameraPath = 0, lightPath = 1, test = 2 };
+enum class RandomDomain : std::uint32_t { cameraPath = 0, lightPath = 1, test = 2, wavelength = 3 };
 
 /// The numbers of one path, dimension after dimension.
 class RandomStream {

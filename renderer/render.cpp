@@ -148,7 +148,7 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
         lightPaths > 0 ? static_cast<double>(samplesPerSplattingPass / (framePixels * lightPaths))
                        : std::numeric_limits<double>::infinity();
     const std::uint64_t refusedBefore = scene.refusedRays();
-    const View view{scene, camera, filter};
+    const View view{scene, camera, filter, film.color() == FilmColor::xyz};
     Sampler sampler{view, estimator, film, settings.techniqueImages, settings.seed};
     RenderResult result;
     while (result.samples < settings.samples && !result.wasInterrupted &&

@@ -45,6 +45,8 @@ FilmSettings loadFilm(const ConfigTable& table) {
     film.filter = filter == "box"        ? FilterKind::box
                   : filter == "gaussian" ? FilterKind::gaussian
                                          : FilterKind::blackmanHarris;
+    if (table.choice("color", {"auto", "spectral"}, "auto") == "spectral")
+        film.color = FilmColor::xyz;
     film.filterRadius =
         static_cast<float>(table.number("filter_radius", {0.01, 16.0}, defaultRadius(film.filter)));
     table.finish();
@@ -160,6 +162,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
         loadCamera(root.table("camera"), options, loading, loaded);
     else
         addAutomaticCamera(loaded);
+    if (loaded.camera->settings().isDispersive) loaded.film.color = FilmColor::xyz;
     loaded.hash = contentHash(loading.files, options.overrides);
     loaded.notes = std::move(loading.notes);
     return loaded;

@@ -11,6 +11,7 @@
 #include "config/config.h"
 #include "renderer/camera.h"
 #include "renderer/estimator.h"
+#include "renderer/film.h"
 #include "renderer/filter.h"
 #include "renderer/scene.h"
 
@@ -19,7 +20,8 @@ namespace etendue {
 struct FilmSettings {
     int width = 720, height = 480;
     FilterKind filter = FilterKind::box;
-    float filterRadius = 0.5f;  // pixels
+    float filterRadius = 0.5f;         // pixels
+    FilmColor color = FilmColor::rgb;  // xyz: the render is spectral
 };
 
 struct LoadedScene {

@@ -82,14 +82,4 @@ inline float maxLane(const Spectrum& s) {
 /// lanes in use.
 inline float brightness(const Spectrum& s) { return (s[0] + s[1] + s[2]) * (1.0f / 3.0f); }
 
-/// The wavelengths that a path carries, one per lane. An RGB scene traces the lens and every
-/// refraction at `rgbWavelengthNm`, in the middle of the visible range.
-struct Wavelengths {
-    static constexpr float rgbWavelengthNm = 550.0f;
-    std::array<float, Spectrum::lanes> nm{rgbWavelengthNm, rgbWavelengthNm, rgbWavelengthNm,
-                                          rgbWavelengthNm};
-
-    constexpr float heroNm() const { return nm[0]; }
-};
-
 }  // namespace etendue

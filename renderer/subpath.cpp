@@ -93,18 +93,19 @@ float densityAt(const PathVertex& to, const PathVertex& from, float pdfSolidAngl
     return static_cast<float>(pdfSolidAngle * cosine / squared);
 }
 
-void walkFromCamera(const Scene& scene, const CameraRay& ray, const Wavelengths& wavelengths,
-                    const EstimatorSettings& settings, RandomStream& random, CameraSubpath& path) {
+void walkFromCamera(const Scene& scene, CameraSample& sample, const EstimatorSettings& settings,
+                    CameraSubpath& path) {
+    const CameraRay& ray = *sample.ray;
     path.vertices.clear();
     PathVertex& lens = path.vertices.emplace_back();
     lens.kind = PathVertex::Kind::lens;
     lens.point = bareSurfacePoint(ray.origin, {}, ray.direction);
-    const Leg leg{{ray.origin, ray.direction}, Spectrum(ray.weight), 0.0f};
+    const Leg leg{{ray.origin, ray.direction}, sample.throughput, 0.0f};
     const auto firstDensity = [&](const PathVertex& first) {
         return pdfArea(ray, length(first.point.position - ray.origin), first.point.geometricNormal);
     };
     path.escape =
-        walk(scene, Transport::radiance, wavelengths, settings, random, leg,
+        walk(scene, Transport::radiance, sample.color.wavelengths, settings, sample.random, leg,
              static_cast<std::size_t>(settings.maxDepth) + 1, firstDensity, path.vertices);
     if (path.escape && path.vertices.size() == 1) path.escape->pdfSolidAngle = pdfSolidAngle(ray);
 }
@@ -120,15 +121,15 @@ void walkFromLight(const Scene& scene, const Wavelengths& wavelengths,
     const auto emitted = light.emit(uPosition, uDirection);
     if (!emitted) return;
     path.light = choice->index;
-    path.radiance = emitted->radiance;
+    path.radiance = wavelengths.lanesOf(emitted->radiance);
     path.isDirac = emitted->isDiracPosition || emitted->isDiracDirection;
     path.vertices.push_back(emissionVertex(light, *emitted, choice->probability));
     const PathVertex& origin = path.vertices.front();
 
     const double pdfOrigin = choice->probability * static_cast<double>(emitted->pdf.pdfArea);
     const Leg leg{{offsetOrigin(origin.point, emitted->direction), emitted->direction},
-                  emitted->radiance * static_cast<float>(emitted->cosTheta /
-                                                         (pdfOrigin * emitted->pdf.pdfSolidAngle)),
+                  path.radiance * static_cast<float>(emitted->cosTheta /
+                                                     (pdfOrigin * emitted->pdf.pdfSolidAngle)),
                   emitted->pdf.pdfSolidAngle};
     const auto firstDensity = [&](const PathVertex& first) {
         if (!light.isInfinite())

@@ -52,17 +52,17 @@ struct CameraSubpath {
 struct LightSubpath {
     std::vector<PathVertex> vertices;  // [0] lies on the light, and nothing arrives there
     int light = -1;
-    Spectrum radiance;     // as EmittedRay's
+    Spectrum radiance;     // as EmittedRay's, in lanes
     bool isDirac = false;  // no ray finds this light by chance
 };
 
 /// `pdfSolidAngle` at `from`, turned into the measure of `to`: 1/m² on a surface.
 float densityAt(const PathVertex& to, const PathVertex& from, float pdfSolidAngle);
 
-/// A walk from the lens along `ray`, at most `settings.maxDepth` vertices into the scene. The
-/// vector's memory is used again.
-void walkFromCamera(const Scene& scene, const CameraRay& ray, const Wavelengths& wavelengths,
-                    const EstimatorSettings& settings, RandomStream& random, CameraSubpath& path);
+/// A walk from the lens along the sample's ray, which it must have, with its random numbers; at
+/// most `settings.maxDepth` vertices into the scene. The vector's memory is used again.
+void walkFromCamera(const Scene& scene, CameraSample& sample, const EstimatorSettings& settings,
+                    CameraSubpath& path);
 
 /// A walk from a light, at most `settings.maxDepth` vertices in all; none when no light emits.
 void walkFromLight(const Scene& scene, const Wavelengths& wavelengths,

@@ -31,10 +31,11 @@ std::vector<ExrChannels> TechniqueImages::channels(std::uint64_t samples,
         for (const bool isWeighted : {true, false}) {
             const std::string name = nameOf(technique) + (isWeighted ? "." : ".unweighted.");
             ExrChannels image{{name + "R", name + "G", name + "B"}, {}};
-            for (std::size_t p = 0; p < sums->size(); p += 6)
-                for (std::size_t i = 0; i < 3; ++i)
-                    image.pixels.push_back(
-                        static_cast<float>((*sums)[p + i + (isWeighted ? 0 : 3)] / count));
+            for (std::size_t p = isWeighted ? 0 : 3; p < sums->size(); p += 6) {
+                const Vec3d sum{(*sums)[p], (*sums)[p + 1], (*sums)[p + 2]};
+                const Vec3 rgb = toFloat(rgbOf(color_, sum) / count);
+                image.pixels.insert(image.pixels.end(), {rgb.x, rgb.y, rgb.z});
+            }
             result.push_back(std::move(image));
         }
     }

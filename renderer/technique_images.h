@@ -8,6 +8,7 @@
 #include <mutex>
 #include <vector>
 
+#include "renderer/film.h"
 #include "renderer/image_io.h"
 #include "renderer/mis.h"
 #include "renderer/spectrum.h"
@@ -18,7 +19,8 @@ namespace etendue {
 /// that comes by paths of s + t − 1 edges, as far as the technique can make them.
 class TechniqueImages {
 public:
-    explicit TechniqueImages(const FrameWindow& window) : window_(window) {}
+    explicit TechniqueImages(const FrameWindow& window, FilmColor color = FilmColor::rgb)
+        : window_(window), color_(color) {}
 
     /// `value` is not weighted yet. May run at the same time for different pixels.
     void add(int x, int y, Technique technique, const Spectrum& value, float weight);
@@ -32,6 +34,7 @@ private:
     Sums& sumsOf(Technique technique);
 
     FrameWindow window_;
+    FilmColor color_;
     std::mutex mutex_;
     std::map<Technique, std::unique_ptr<Sums>> images_;
 };

@@ -194,7 +194,7 @@ ExitCode runRender(const RenderCommand& command) {
     fitBar.clear();
     printNotes(loaded, isQuiet);
 
-    Film film(windowFor(command, loaded.film), layersFor(command));
+    Film film(windowFor(command, loaded.film), layersFor(command), loaded.film.color);
     const Filter filter(loaded.film.filter, loaded.film.filterRadius);
     const std::unique_ptr<Estimator> estimator = makeEstimator(loaded.estimator);
     RenderSettings settings;
@@ -205,7 +205,7 @@ ExitCode runRender(const RenderCommand& command) {
     settings.threads = threads;
     if (command.timeLimitSeconds) settings.timeLimitSeconds = *command.timeLimitSeconds;
     checkEstimator(command, *estimator);
-    TechniqueImages techniques(film.window());
+    TechniqueImages techniques(film.window(), film.color());
     if (!command.techniqueImages.empty()) settings.techniqueImages = &techniques;
 
     std::signal(SIGINT, requestStop);

@@ -1,6 +1,8 @@
 // Path tracing, light tracing and bidirectional path tracing estimate one picture.
 #include <doctest/doctest.h>
 
+#include <filesystem>
+
 #include "tests/support/scenes.h"
 
 using namespace etendue;
@@ -118,5 +120,28 @@ TEST_CASE("Estimators: …under each kind of light without extent, and from far 
         CAPTURE(light);
         checkAgreement(sceneWith(thinLens, room(matte) + "[[light]]\n" + light), {"lt", "bdpt"},
                        128, 0.08);
+    }
+}
+
+TEST_CASE("Estimators: …through lenses of glass that part the colours" *
+          doctest::test_suite("statistical")) {
+    const std::string lenses =
+        (std::filesystem::path(__FILE__).parent_path() / "../../scenes/lenses").string();
+    struct Case {
+        const char* lens;
+        const char* more;
+    };
+    for (const Case& c : {
+             Case{"petzval-50mm.toml", "terms = 24\ndegree = 9\n"},
+             Case{"double-gauss-50mm-f1.1.toml", "terms = 24\ndegree = 9\nf_number = 2\n"},
+             Case{"fisheye-10mm.toml", "terms = 24\ndegree = 9\nsensor_width_mm = 22\n"},
+             Case{"double-gauss-50mm-f1.1.toml", "representation = \"traced\"\nf_number = 4\n"},
+         }) {
+        CAPTURE(std::string(c.lens));
+        const std::string camera = "lens = \"" + lenses + "/" + c.lens +
+                                   "\"\nfocus_distance = 3.4\nfrom = [0.2, 1, 3.9]\nto = [0, 0.9, "
+                                   "0]\n" +
+                                   c.more;
+        checkAgreement(sceneWith(camera, room(matte) + areaLamp), {"lt", "bdpt"}, 64, 0.06);
     }
 }

@@ -39,10 +39,9 @@ FittedMap::FittedMap(const Prescription& prescription, const LensFit& fit)
 
 std::optional<ExitRay> FittedMap::exitRay(SensorPoint sensor, AperturePoint aperture,
                                           double wavelengthNm) const {
-    const std::optional<ExitRay> ray = apertureMap_
-                                           ? sensorStateRay(sensor, aperture, wavelengthNm)
-                                           : twoPointRay({sensor.mm, aperture.mm, wavelengthNm});
-    if (!ray || !(ray->throughput > 0.0)) return {};
+    std::optional<ExitRay> ray = apertureMap_ ? sensorStateRay(sensor, aperture, wavelengthNm)
+                                              : twoPointRay({sensor.mm, aperture.mm, wavelengthNm});
+    if (ray && !(ray->throughput > 0.0)) ray.reset();
     return ray;
 }
 

@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "lens/density.h"
@@ -13,33 +12,33 @@ namespace etendue {
 
 /// How a ray misses a target, seen from where it leaves the lens.
 struct Miss {
-    double radians;
+    double squared;              // of the angle in radians; of its sine, where that is below 0.1
     Eigen::Vector2d sensorStep;  // mm; takes the miss away to first order
 };
 
 inline Miss missOf(const ExitRay& ray, const Eigen::Vector3d& target) {
     const Eigen::Vector3d toTarget = target - ray.origin, &d = ray.direction;
-    const double perDistance = 1.0 / toTarget.norm();
-    const double cosine = toTarget.dot(d) * perDistance;
-    Eigen::Vector3d turn = toTarget * perDistance - cosine * d;  // from d toward the target
-    const double sine = turn.norm();
-    Miss miss{};
-    if (cosine > 0.95) {  // the first terms of the arc sine, good to 1e-5 here
-        miss.radians = sine * (1.0 + sine * sine * (1.0 / 6.0 + sine * sine * (3.0 / 40.0)));
-        turn *= 1.0 + sine * sine / 6.0;
-    } else if (sine > 0.0) {
-        miss.radians = std::atan2(sine, cosine);
-        turn *= miss.radians / sine;
-    } else {  // straight behind
-        miss.radians = std::numbers::pi;
-        turn = miss.radians * d.unitOrthogonal();
+    const double squaredDistance = toTarget.squaredNorm();
+    double along = toTarget.dot(d);
+    Eigen::Vector3d across = toTarget - along * d;  // what the ray passes the target by
+    Miss miss{across.squaredNorm() / squaredDistance, {}};
+    if (!(along > 0.0 && miss.squared < 0.1)) {
+        // Here across / along, a tangent, says too much of the angle, or nothing.
+        const double distance = std::sqrt(squaredDistance), sine = std::sqrt(miss.squared);
+        const double angle = std::atan2(sine, along / distance);
+        miss.squared = angle * angle;
+        if (sine > 0.0)
+            across *= angle / sine;
+        else  // straight behind
+            across = distance * angle * d.unitOrthogonal();
+        along = distance;
     }
-    // Equation (9) by Cramer's rule.
-    const Eigen::Matrix<double, 3, 2> bySensor =
-        ray.directionBySensor + perDistance * ray.originBySensor;
-    const Eigen::Vector3d across = turn.cross(d);
-    miss.sensorStep << across.dot(-bySensor.col(1)), across.dot(bySensor.col(0));
-    miss.sensorStep /= determinantAcross(d, bySensor);
+    // Equation (9), times the distance, by Cramer's rule.
+    const Eigen::Matrix<double, 3, 2> moved = footprint(ray, along);
+    const Eigen::Vector3d aside = across.cross(d);
+    const double perDeterminant = 1.0 / determinantAcross(d, moved);
+    miss.sensorStep << aside.dot(-moved.col(1)) * perDeterminant,
+        aside.dot(moved.col(0)) * perDeterminant;
     return miss;
 }
 
@@ -71,25 +70,11 @@ public:
         }
         if (!ray) return {};
         Miss miss = missOf(*ray, target);
-        constexpr int mostSteps = 12, mostHalvings = 4;
-        for (int i = 0; !(miss.radians <= toleranceRadians); ++i) {
+        constexpr int mostSteps = 12;
+        for (int i = 0; !(miss.squared <= toleranceRadians * toleranceRadians); ++i) {
             if (i == mostSteps || !miss.sensorStep.allFinite()) return {};
             ++steps_;
-            const double length = miss.sensorStep.norm();
-            double share = length > longestStepMm_ ? longestStepMm_ / length : 1.0;
-            std::optional<ExitRay> next;
-            Miss nextMiss{};
-            int halvings = 0;
-            for (; halvings < mostHalvings; ++halvings, share *= 0.5) {
-                next = exit_(s + share * miss.sensorStep, apertureShare);
-                if (!next) continue;
-                nextMiss = missOf(*next, target);
-                if (nextMiss.radians < miss.radians) break;
-            }
-            if (halvings == mostHalvings) return {};
-            s += share * miss.sensorStep;
-            ray = next;
-            miss = nextMiss;
+            if (!improve(target, apertureShare, s, *ray, miss)) return {};
         }
         // One more step squares what is missing.
         return Aimed{s + miss.sensorStep, *ray};
@@ -129,6 +114,26 @@ public:
     int steps() const { return steps_; }
 
 private:
+    /// Takes the step, or as much of it as makes the miss smaller: halves, again and again.
+    bool improve(const Eigen::Vector3d& target, double apertureShare, Eigen::Vector2d& s,
+                 ExitRay& ray, Miss& miss) {
+        constexpr int mostHalvings = 4;
+        const double length = miss.sensorStep.norm();
+        double share = length > longestStepMm_ ? longestStepMm_ / length : 1.0;
+        for (int i = 0; i < mostHalvings; ++i, share *= 0.5) {
+            const Eigen::Vector2d there = s + share * miss.sensorStep;
+            const std::optional<ExitRay> next = exit_(there, apertureShare);
+            if (!next) continue;
+            const Miss nextMiss = missOf(*next, target);
+            if (!(nextMiss.squared < miss.squared)) continue;
+            s = there;
+            ray = *next;
+            miss = nextMiss;
+            return true;
+        }
+        return false;
+    }
+
     const Exit& exit_;
     double longestStepMm_;  // beyond which a lens does not turn rays evenly
     int steps_ = 0;

@@ -38,7 +38,8 @@ TwoStepResult twoStepNewton(const StateRayOf& stateRay, const Eigen::Vector3d& t
         at = stateRay(sensor, slope);
         if (!at) return result;
         const Miss miss = missOf(at->exit, target);
-        if (apertureMiss.norm() <= tolerance * stopRadiusMm && miss.radians <= tolerance) {
+        if (apertureMiss.norm() <= tolerance * stopRadiusMm &&
+            miss.squared <= tolerance * tolerance) {
             result.sensor = sensor;
             return result;
         }

@@ -26,7 +26,8 @@ template <class Number, class T, int Size>
 template <class Number, class T, int Size, int Inputs, int Levels>
 void evaluateLanes(const BatchTask<T>& task, int first) {
     constexpr int by = derivedLevels(Levels, Inputs);
-    // Slots whose sums fit in 32 registers of 64 bytes; groups that are not axial may have but one.
+    // Slots whose sums fit, with a scalar's, in 32 registers of 64 bytes; groups that are not axial
+    // may have but one.
     constexpr bool areMany = Levels == 4 && Number::registerBytes == 64;
     constexpr int together = !areMany ? 1 : by > 2 ? 2 : 4;
     Number in[5];
@@ -38,14 +39,27 @@ void evaluateLanes(const BatchTask<T>& task, int first) {
         number.store(row + first);
     };
     const SlotUse& use = task.use;
+    Number sums[4][1 + by];
+    int scalar = 0;  // the next
+    const auto sweep = [&]<int Jets, int Values>(std::integral_constant<int, Jets>,
+                                                 std::integral_constant<int, Values>, int slot) {
+        constexpr int derived = Jets == 0 ? 0 : by;
+        const auto part = HornerSweep<Lanes::points, Number, Jets, Values, derived, Levels>(
+                              task.terms, slot, variables)
+                              .run();
+        if constexpr (Jets > 0) std::memcpy(sums[slot], part.jets, sizeof(part.jets));
+        if constexpr (Values > 0) store(use.firstScalar + scalar++, 0, part.values[0]);
+    };
+    constexpr std::integral_constant<int, 0> none;
+    constexpr std::integral_constant<int, 1> one;
+    constexpr std::integral_constant<int, together> some;
     if (use.vectorSlots > 0) {
-        Number sums[4][1 + by];
-        for (int slot = 0; slot < use.vectorSlots; slot += together) {
-            const auto part = HornerSweep<Lanes::points, Number, together, 0, by, Levels>(
-                                  task.terms, slot, variables)
-                                  .run();
-            std::memcpy(sums[slot], part.jets, sizeof(part.jets));
-        }
+        int slot = 0;
+        for (; slot + together < use.vectorSlots; slot += together) sweep(some, none, slot);
+        if (areMany && use.scalars > 0)
+            sweep(some, one, slot);
+        else
+            sweep(some, none, slot);
         if constexpr (Levels == 4) {
             for (int v = 0; v < task.vectors; ++v)
                 composeVector<Inputs>(sums[v], sums[mostVectors + v], in, task.factors,
@@ -53,20 +67,15 @@ void evaluateLanes(const BatchTask<T>& task, int first) {
                                           store(2 * v + i, column, number);
                                       });
         } else {
-            for (int slot = 0; slot < use.vectorSlots; ++slot)
-                composeComponent<Inputs>(sums[slot], task.factors,
+            for (int i = 0; i < use.vectorSlots; ++i)
+                composeComponent<Inputs>(sums[i], task.factors,
                                          [&](int column, const Number& number) {
-                                             store(use.components[slot], column, number);
+                                             store(use.components[i], column, number);
                                          });
         }
     }
     const int firstSlot = use.vectorSlots > 0 ? 4 : 0;
-    for (int scalar = 0; scalar < use.scalars; ++scalar)
-        store(use.firstScalar + scalar, 0,
-              HornerSweep<Lanes::points, Number, 0, 1, 0, Levels>(task.terms, firstSlot + scalar,
-                                                                  variables)
-                  .run()
-                  .values[0]);
+    while (scalar < use.scalars) sweep(none, one, firstSlot + scalar);
 }
 
 template <int RegisterBytes, class T, int Size, int Inputs>

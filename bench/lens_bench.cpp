@@ -74,8 +74,9 @@ void addSingle(std::vector<Contestant>& contestants, const std::string& name,
 
 template <class T, int size>
 void addBatch(std::vector<Contestant>& contestants, const std::string& name,
-              const SparsePolynomial& polynomial, const Inputs& inputs) {
-    const PolynomialEvaluator<T> evaluator(polynomial);
+              const SparsePolynomial& polynomial, const Inputs& inputs,
+              VectorRegisters registers = widestRegisters()) {
+    const PolynomialEvaluator<T> evaluator(polynomial, registers);
     std::vector<BatchInput<T, size>> batches(inputs.size() / size);
     for (std::size_t b = 0; b < batches.size(); ++b)
         for (int i = 0; i < size; ++i) {
@@ -114,12 +115,14 @@ FitSettings settingsFor(PolynomialBasis basis, int terms) {
     return settings;
 }
 
-/// Rays that pass, with the slopes and scene points that belong to them.
+/// A ray that passes, with the slope that belongs to it.
 struct Ray {
     FitQuery query;
     SensorState state;
-    Eigen::Vector3d target;  // 2 m along the ray
+    ExitRay exit;
 };
+
+constexpr double targetDistancesMetres[] = {0.1, 2.0, 1000.0};
 
 std::vector<Ray> drawRays(const TracedLens& exact, const FitDomain& domain, std::size_t count) {
     std::vector<Ray> rays;
@@ -128,9 +131,8 @@ std::vector<Ray> drawRays(const TracedLens& exact, const FitDomain& domain, std:
         const auto exit = exact.trace(query.sensor, query.aperture, query.wavelengthNm);
         if (!exit) continue;
         const auto slope = exact.at(query.wavelengthNm)->slopeThrough(query.sensor, query.aperture);
-        rays.push_back({query,
-                        {query.sensor.mm.x(), query.sensor.mm.y(), slope->x(), slope->y()},
-                        exit->origin + 2000.0 * exit->direction});
+        rays.push_back(
+            {query, {query.sensor.mm.x(), query.sensor.mm.y(), slope->x(), slope->y()}, *exit});
     }
     return rays;
 }
@@ -138,19 +140,26 @@ std::vector<Ray> drawRays(const TracedLens& exact, const FitDomain& domain, std:
 void addLens(std::vector<Contestant>& contestants, const std::string& name, const auto& lens,
              const std::vector<Ray>& rays) {
     contestants.push_back({name + " trace", rays.size(), [&] {
-                               for (const auto& [query, state, target] : rays) {
+                               for (const auto& [query, state, exit] : rays) {
                                    const auto ray =
                                        lens.trace(query.sensor, query.aperture, query.wavelengthNm);
                                    sink = ray ? ray->throughput : 0.0;
                                }
                            }});
-    contestants.push_back({name + " connect", rays.size(), [&] {
-                               for (const auto& [query, state, target] : rays) {
-                                   const auto sensor =
-                                       lens.connect(target, query.aperture, query.wavelengthNm);
-                                   sink = sensor ? sensor->mm.x() : 0.0;
-                               }
-                           }});
+    for (const double metres : targetDistancesMetres) {
+        std::vector<Eigen::Vector3d> targets;
+        for (const Ray& ray : rays)
+            targets.push_back(ray.exit.origin + 1e3 * metres * ray.exit.direction);
+        contestants.push_back({fmt::format("{} connect {} m", name, metres), rays.size(),
+                               [&lens, &rays, targets = std::move(targets)] {
+                                   for (std::size_t i = 0; i < rays.size(); ++i) {
+                                       const FitQuery& query = rays[i].query;
+                                       const auto sensor = lens.connect(targets[i], query.aperture,
+                                                                        query.wavelengthNm);
+                                       sink = sensor ? sensor->mm.x() : 0.0;
+                                   }
+                               }});
+    }
 }
 
 /// The C++ that codegen writes of a fit, compiled as its users would and loaded.
@@ -230,6 +239,9 @@ void measureLens(const std::string& file) {
         addSingle<double>(contestants, name + " double", fit.exit, inputs);
         if (terms != 40) continue;
         addSingle<float>(contestants, name + " float", fit.exit, inputs);
+        if (widestRegisters() != VectorRegisters::narrow)
+            addBatch<float, 16>(contestants, name + " narrow float", fit.exit, inputs,
+                                VectorRegisters::narrow);
         addBatch<float, 8>(contestants, name + " float", fit.exit, inputs);
         addBatch<float, 16>(contestants, name + " float", fit.exit, inputs);
         addBatch<double, 8>(contestants, name + " double", fit.exit, inputs);

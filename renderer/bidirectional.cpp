@@ -31,13 +31,15 @@ struct Scratch {
 class BidirectionalSample {
 public:
     BidirectionalSample(const View& view, const SpectralSample& color,
-                        const EstimatorSettings& settings, const SampleCounts& counts,
+                        const EstimatorSettings& settings, const TechniqueSet& techniques,
                         Sample& result, Scratch& scratch)
         : view_(view),
           color_(color),
           wavelengths_(color.wavelengths),
           settings_(settings),
-          counts_(counts),
+          techniques_(techniques),
+          lightPaths_(1.0 * settings.lightPaths * view.camera.settings().width *
+                      view.camera.settings().height),
           result_(result),
           camera_(scratch.camera),
           light_(scratch.light),
@@ -58,18 +60,18 @@ public:
     void connectToLens(RandomStream& random) {
         for (std::size_t s = 1; s <= light_.vertices.size(); ++s) {
             const Vec2 apertureUniform = random.next2();
-            if (!counts_.techniques.contains({static_cast<int>(s), 1})) continue;
+            if (!techniques_.contains({static_cast<int>(s), 1})) continue;
             const PathVertex& y = light_.vertices[s - 1];
             if (y.kind == PathVertex::Kind::surface && !canConnect(y)) continue;
             // Behind a dispersive lens every wavelength lands in a place of its own.
-            const int connections = isParted(view_) ? Spectrum::lanes : 1;
-            for (lane_ = 0; lane_ < connections; ++lane_) {
+            const int connections = isParted(view_) && !y.isHeroOnly ? Spectrum::lanes : 1;
+            for (int lane = 0; lane < connections; ++lane) {
                 if (y.kind == PathVertex::Kind::infinite)
-                    connectInfinityToLens(y, apertureUniform);
+                    connectInfinityToLens(y, apertureUniform, lane);
                 else if (s == 1)
-                    connectEmissionToLens(y, apertureUniform);
+                    connectEmissionToLens(y, apertureUniform, lane);
                 else
-                    connectVertexToLens(s, apertureUniform);
+                    connectVertexToLens(s, apertureUniform, lane);
             }
         }
     }
@@ -97,10 +99,10 @@ private:
         if (camera_.vertices.size() >= 2) {
             if (!canConnect(camera_.vertices[1])) return false;
             connection = view_.camera.connect(camera_.vertices[1].point.position,
-                                              sample.apertureUniform, wavelengths_, lane_);
+                                              sample.apertureUniform, wavelengths_);
         } else if (camera_.escape) {
-            connection = view_.camera.connectToInfinity(
-                camera_.escape->direction, sample.apertureUniform, wavelengths_, lane_);
+            connection = view_.camera.connectToInfinity(camera_.escape->direction,
+                                                        sample.apertureUniform, wavelengths_);
         }
         return connection && std::abs(connection->film.x - sample.film.x) < tolerance &&
                std::abs(connection->film.y - sample.film.y) < tolerance;
@@ -125,7 +127,13 @@ private:
             path_[t].isConnectable = true;
         }
         if (s >= 2) path_[t + 1].fromCamera = join.beforeLightEnd;
-        return balanceWeight(path_, {static_cast<int>(s), static_cast<int>(t)}, counts_);
+        // Through a dispersive lens connections are made at each of four wavelengths, paths at one;
+        // unless a glass has left only one on either.
+        const bool isInDispersion =
+            camera.back().isInDispersion || (s > 0 && light.back().isInDispersion);
+        const double lanes = isParted(view_) && !isInDispersion ? Spectrum::lanes : 1.0;
+        return balanceWeight(path_, {static_cast<int>(s), static_cast<int>(t)},
+                             {techniques_, lanes * lightPaths_});
     }
 
     void add(std::size_t s, std::size_t t, const Spectrum& value, float weight) {
@@ -134,11 +142,11 @@ private:
                                          .weight = weight,
                                          .film = film_});
     }
-    void splat(std::size_t s, Vec2 film, const Spectrum& value, float weight) {
+    void splat(std::size_t s, int lane, Vec2 film, const Spectrum& value, float weight) {
+        const bool isAlone = isParted(view_) && !light_.vertices[s - 1].isHeroOnly;
         const Spectrum landing =
-            isParted(view_)
-                ? Spectrum::fromLanes([&](int i) { return i == lane_ ? value[i] : 0.0f; })
-                : value;
+            isAlone ? Spectrum::fromLanes([&](int i) { return i == lane ? value[i] : 0.0f; })
+                    : value;
         result_.contributions.push_back({.technique = {static_cast<int>(s), 1},
                                          .value = color_.onFilm(landing),
                                          .weight = weight,
@@ -146,7 +154,7 @@ private:
                                          .isSplat = true});
     }
     bool isWanted(std::size_t s, std::size_t t) const {
-        return counts_.techniques.contains({static_cast<int>(s), static_cast<int>(t)});
+        return techniques_.contains({static_cast<int>(s), static_cast<int>(t)});
     }
     Vertices cameraVertices(std::size_t t) const { return Vertices(camera_.vertices).first(t); }
     Vertices lightVertices(std::size_t s) const { return Vertices(light_.vertices).first(s); }
@@ -177,6 +185,7 @@ private:
         PathVertex& end = camera_.vertices.emplace_back();
         end.kind = PathVertex::Kind::infinite;
         end.density.fromCamera = escape.pdfSolidAngle;
+        end.isInDispersion = escape.isInDispersion;
         const PathVertex& last = camera_.vertices[t - 2];
         const EmitterHit hit{escape.direction, std::numeric_limits<float>::infinity(),
                              -escape.direction};
@@ -251,8 +260,10 @@ private:
         join.beforeCameraEnd = densityAt(camera_.vertices[t - 2], z, atCamera.pdfSolidAngleReverse);
         join.lightEnd = densityAt(y, z, atCamera.pdfSolidAngle);
         join.beforeLightEnd = lightOriginDensity(s, y, atLight.pdfSolidAngleReverse);
+        // Where each walk is left with the hero, each lets it stand for all four.
+        const double stands = z.isHeroOnly && y.isHeroOnly ? 1.0 / Spectrum::lanes : 1.0;
         const Spectrum value = z.throughput * atCamera.value * atLight.value * y.throughput *
-                               static_cast<float>(1.0 / distanceSquared);
+                               static_cast<float>(stands / distanceSquared);
         add(s, t, value, weightOf(cameraVertices(t), lightVertices(s), join));
     }
 
@@ -263,10 +274,10 @@ private:
     }
 
     /// s ≥ 2, t = 1.
-    void connectVertexToLens(std::size_t s, Vec2 apertureUniform) {
+    void connectVertexToLens(std::size_t s, Vec2 apertureUniform, int lane) {
         const PathVertex& y = light_.vertices[s - 1];
         const auto connection =
-            view_.camera.connect(y.point.position, apertureUniform, wavelengths_, lane_);
+            view_.camera.connect(y.point.position, apertureUniform, wavelengths_, lane);
         if (!connection || !isOnFilm(connection->film)) return;
         const Vec3 toLens = -connection->ray.direction;
         const Scattering scattering =
@@ -278,13 +289,13 @@ private:
         // `scattering` holds the cosine of the surface, so the importance is that across the ray.
         const Spectrum value = y.throughput * scattering.value *
                                importance(connection->ray, connection->distance, toLens);
-        splat(s, connection->film, value, weightOf(lens(), lightVertices(s), join));
+        splat(s, lane, connection->film, value, weightOf(lens(), lightVertices(s), join));
     }
 
     /// s = 1, t = 1: the light itself through the lens.
-    void connectEmissionToLens(const PathVertex& y, Vec2 apertureUniform) {
+    void connectEmissionToLens(const PathVertex& y, Vec2 apertureUniform, int lane) {
         const auto connection =
-            view_.camera.connect(y.point.position, apertureUniform, wavelengths_, lane_);
+            view_.camera.connect(y.point.position, apertureUniform, wavelengths_, lane);
         if (!connection || !isOnFilm(connection->film)) return;
         const CameraRay& ray = connection->ray;
         const Light& light = view_.scene.lights()[light_.light];
@@ -298,12 +309,12 @@ private:
         join.lightEnd = isPoint ? 0.0f : pdfArea(ray, connection->distance, normal);
         const Spectrum value =
             emitted * (importance(ray, connection->distance, normal) / y.density.fromLight);
-        splat(1, connection->film, value, weightOf(lens(), lightVertices(1), join));
+        splat(1, lane, connection->film, value, weightOf(lens(), lightVertices(1), join));
     }
 
-    void connectInfinityToLens(const PathVertex& y, Vec2 apertureUniform) {
+    void connectInfinityToLens(const PathVertex& y, Vec2 apertureUniform, int lane) {
         const auto connection =
-            view_.camera.connectToInfinity(y.wo, apertureUniform, wavelengths_, lane_);
+            view_.camera.connectToInfinity(y.wo, apertureUniform, wavelengths_, lane);
         if (!connection || !isOnFilm(connection->film)) return;
         const CameraRay& ray = connection->ray;
         if (!view_.scene.isVisibleToInfinity(ray.origin, ray.direction)) return;
@@ -311,7 +322,7 @@ private:
         join.lightEnd = light_.isDirac ? 0.0f : pdfSolidAngle(ray);
         const Spectrum value =
             light_.radiance * (ray.weight * pdfSolidAngle(ray) / y.density.fromLight);
-        splat(1, connection->film, value, weightOf(lens(), lightVertices(1), join));
+        splat(1, lane, connection->film, value, weightOf(lens(), lightVertices(1), join));
     }
 
     /// W/sr, from the irradiance of a light that is a point.
@@ -345,14 +356,14 @@ private:
     const SpectralSample& color_;
     const Wavelengths& wavelengths_;
     const EstimatorSettings& settings_;
-    const SampleCounts& counts_;
+    const TechniqueSet& techniques_;
+    double lightPaths_;  // of one sample of the whole frame
     Sample& result_;
     CameraSubpath& camera_;
     LightSubpath& light_;
     std::vector<VertexDensity>& path_;
     PathVertex lens_ = connectableLens();
     Vec2 film_;
-    int lane_ = 0;  // whose connection to the lens is being made
 };
 
 class Bidirectional final : public Estimator {
@@ -367,15 +378,9 @@ public:
                     Sample& result) const override {
         result.contributions.clear();
         result.firstHit.reset();
-        const CameraSettings& frame = view.camera.settings();
-        // Connections to a dispersive lens are made at each wavelength, paths from it at one of
-        // four.
-        const double lanes = isParted(view) ? Spectrum::lanes : 1.0;
-        const SampleCounts counts{techniques_,
-                                  lanes * settings_.lightPaths * frame.width * frame.height};
         const SpectralSample color = drawWavelengths(view, id);
         static thread_local Scratch scratch;
-        BidirectionalSample sample(view, color, settings_, counts, result, scratch);
+        BidirectionalSample sample(view, color, settings_, techniques_, result, scratch);
         // The last light path is the one that the camera's is connected to.
         for (int i = 0; i < lightPathsPerSample(); ++i) {
             const auto path = static_cast<std::uint32_t>(i);

@@ -42,6 +42,7 @@ struct BsdfSample {
         0.0f;  // of the continuous part; of a Dirac lobe: its probability, no density
     float pdfSolidAngleReverse = 0.0f;  // likewise, for the walk reversed
     bool isDirac = false;
+    bool isHeroOnly = false;  // the direction is the hero wavelength's; the others go elsewhere
 };
 
 class Bsdf {

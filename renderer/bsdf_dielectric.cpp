@@ -21,25 +21,56 @@ Spectrum averageShare(float ior, const Spectrum& tint) {
     return Spectrum(reflected) + tint * (1.0f - reflected);
 }
 
+/// n = A + B/λ² (Cauchy), from the index at the d line and Abbe's number.
+class DispersiveIndex {
+public:
+    DispersiveIndex(float atDLine, float abbeNumber)
+        : perSquareNm_((atDLine - 1.0) / (abbeNumber * (1.0 / (fNm * fNm) - 1.0 / (cNm * cNm)))),
+          offset_(atDLine - perSquareNm_ / (dNm * dNm)) {}
+
+    float at(float wavelengthNm) const {
+        const double nm = wavelengthNm;
+        return static_cast<float>(offset_ + perSquareNm_ / (nm * nm));
+    }
+
+private:
+    static constexpr double dNm = 587.5618, fNm = 486.1327, cNm = 656.2725;
+    double perSquareNm_, offset_;
+};
+
 class SmoothDielectric final : public Bsdf {
 public:
-    SmoothDielectric(float ior, const Spectrum& tint)
-        : ior_(ior), tint_(tint), albedo_(averageShare(ior, tint)) {}
+    SmoothDielectric(float ior, const Spectrum& tint, std::optional<DispersiveIndex> dispersion)
+        : ior_(ior), tint_(tint), albedo_(averageShare(ior, tint)), dispersion_(dispersion) {}
 
     BsdfValue evaluate(const BsdfContext&, Vec3, Vec3) const override { return {}; }
 
     std::optional<BsdfSample> sample(const BsdfContext& context, Vec3 wo, float uLobe,
                                      Vec2) const override {
         if (isInSurface(wo)) return std::nullopt;
-        const float eta = wo.z > 0.0f ? ior_ : 1.0f / ior_;
-        const auto [reflected, cosTransmitted] =
-            fresnelDielectric(std::min(std::abs(wo.z), 1.0f), eta);
-        if (uLobe < reflected)
-            return diracSample({-wo.x, -wo.y, wo.z}, Spectrum(1.0f), reflected, reflected);
+        const bool isParting = dispersion_ && context.wavelengths.isSpectral;
+        const float ior = isParting ? dispersion_->at(context.wavelengths.heroNm()) : ior_;
+        const float eta = wo.z > 0.0f ? ior : 1.0f / ior;
+        const float cosine = std::min(std::abs(wo.z), 1.0f);
+        const auto [reflected, cosTransmitted] = fresnelDielectric(cosine, eta);
+        if (uLobe < reflected) {
+            Spectrum weight(1.0f);
+            // Reflected, all wavelengths go one way, each with its own share.
+            if (isParting)
+                weight = Spectrum::fromLanes([&](int lane) {
+                    const float other =
+                        dispersion_->at(context.wavelengths.nm[static_cast<std::size_t>(lane)]);
+                    const float otherEta = wo.z > 0.0f ? other : 1.0f / other;
+                    return fresnelDielectric(cosine, otherEta).reflectance / reflected;
+                });
+            return diracSample({-wo.x, -wo.y, wo.z}, weight, reflected, reflected);
+        }
         const Vec3 wi = {-wo.x / eta, -wo.y / eta, -std::copysign(cosTransmitted, wo.z)};
-        return diracSample(
-            wi, context.wavelengths.lanesOf(tint_) * transportFactor(context.transport, eta),
-            1.0f - reflected, 1.0f - reflected);
+        const Spectrum weight =
+            context.wavelengths.lanesOf(tint_) * transportFactor(context.transport, eta);
+        BsdfSample sample = diracSample(wi, weight, 1.0f - reflected, 1.0f - reflected);
+        sample.isHeroOnly = isParting;
+        return sample;
     }
 
     bool isDirac() const override { return true; }
@@ -48,6 +79,7 @@ public:
 private:
     float ior_;
     Spectrum tint_, albedo_;
+    std::optional<DispersiveIndex> dispersion_;
 };
 
 class RoughDielectric final : public Bsdf {
@@ -160,8 +192,12 @@ private:
 std::unique_ptr<Bsdf> makeDielectric(float ior, const Spectrum& tint, float roughness) {
     const float alpha = alphaFromRoughness(roughness);
     if (alpha * std::min(1.0f, std::abs(ior - 1.0f)) < smallestAlpha)
-        return std::make_unique<SmoothDielectric>(ior, tint);
+        return std::make_unique<SmoothDielectric>(ior, tint, std::nullopt);
     return std::make_unique<RoughDielectric>(ior, tint, alpha);
+}
+
+std::unique_ptr<Bsdf> makeDispersiveDielectric(float ior, float abbeNumber, const Spectrum& tint) {
+    return std::make_unique<SmoothDielectric>(ior, tint, DispersiveIndex(ior, abbeNumber));
 }
 
 }  // namespace etendue

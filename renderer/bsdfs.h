@@ -29,6 +29,10 @@ std::unique_ptr<Bsdf> makeConductor(const Spectrum& reflectance, float roughness
 /// which microfacet refracted it.
 std::unique_ptr<Bsdf> makeDielectric(float ior, const Spectrum& tint, float roughness);
 
+/// The same, smooth, of a glass whose index falls with the wavelength: `ior` at the d line, and
+/// Abbe's number (n_d − 1) / (n_F − n_C), positive. In an RGB scene it does not disperse.
+std::unique_ptr<Bsdf> makeDispersiveDielectric(float ior, float abbeNumber, const Spectrum& tint);
+
 /// A diffuse base under a coat of dielectric; light that the coat lets in bounces between the two
 /// until it leaves, and is coloured by `diffuse` each time.
 std::unique_ptr<Bsdf> makePlastic(Texture diffuse, float ior, float roughness);

@@ -6,6 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "lens/outer_pupil.h"
+#include "renderer/frame.h"
+
 namespace etendue {
 
 namespace {
@@ -15,7 +18,7 @@ namespace {
 constexpr double metresPerMm = 1e-3;
 
 Eigen::Vector2d toEigen(Vec2 v) { return {v.x, v.y}; }
-Vec3d fromEigen(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Vec3d toVec(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 Eigen::Vector2d filmCenter(const CameraSettings& settings) {
     return {0.5 * settings.width, 0.5 * settings.height};
@@ -106,6 +109,9 @@ std::optional<CameraConnection> Camera::connect(Vec3 scenePoint, Vec2 apertureUn
                                                 const Wavelengths& wavelengths, int lane) const {
     const Vec3d target = lensFromWorld_.point(toDouble(scenePoint)) / metresPerMm;
     const Eigen::Vector3d targetMm(target.x, target.y, target.z);
+    if (settings_.outerPupil)
+        return connectAtOuterPupil(targetMm, false, apertureUniform,
+                                   wavelengthNm(wavelengths, lane));
     const std::optional<Seen> seen =
         see(targetMm, apertureUniform, wavelengthNm(wavelengths, lane));
     if (!seen) return {};
@@ -125,13 +131,47 @@ std::optional<CameraConnection> Camera::connectToInfinity(Vec3 direction, Vec2 a
     // So far away that a lens's size is an angle below a float's rounding.
     constexpr double farMm = 1e12;
     const Vec3d target = lensFromWorld_.vector(toDouble(direction)) * farMm;
+    const Eigen::Vector3d targetMm(target.x, target.y, target.z);
+    if (settings_.outerPupil)
+        return connectAtOuterPupil(targetMm, true, apertureUniform,
+                                   wavelengthNm(wavelengths, lane));
     const std::optional<Seen> seen =
-        see({target.x, target.y, target.z}, apertureUniform, wavelengthNm(wavelengths, lane));
+        see(targetMm, apertureUniform, wavelengthNm(wavelengths, lane));
     if (!seen) return {};
     const CameraConnection connection{.film = seen->film,
                                       .ray = worldRay(seen->exit),
                                       .distance = std::numeric_limits<float>::infinity()};
     if (std::isinf(pdfSolidAngle(connection.ray))) return {};
+    return connection;
+}
+
+Vec2 Camera::filmPoint(const Eigen::Vector2d& sensorMm) const {  // (3)
+    const Eigen::Vector2d film =
+        (sensorMm - settings_.sensorOffsetMm) / pixelMm_ + filmCenter(settings_);
+    return {static_cast<float>(film.x()), static_cast<float>(film.y())};
+}
+
+std::optional<CameraConnection> Camera::connectAtOuterPupil(const Eigen::Vector3d& targetMm,
+                                                            bool isAtInfinity, Vec2 uniform,
+                                                            double nm) const {
+    const auto arrival = settings_.outerPupil->arrive(targetMm, isAtInfinity, toEigen(uniform), nm);
+    if (!arrival) return {};
+    const Transform& world = settings_.worldFromLens;
+    CameraConnection connection{};
+    connection.film = filmPoint(arrival->sensorMm);
+    CameraRay& ray = connection.ray;
+    ray.origin = toFloat(world.point(toVec(arrival->entranceMm) * metresPerMm));
+    ray.direction = toFloat(world.vector(toVec(arrival->direction)));
+    // Equation (1) with ds da J = ds dω cosθ, the étendue that the lens conserves, at the sensor
+    // and at the entrance: what comes through the point is drawn there by its area, so that of the
+    // footprint only the distance squared is left.
+    const double pixels = lens_->apertureAreaMm2() * pixelMm_ * pixelMm_;
+    ray.weight = static_cast<float>(arrival->etenduePerSolidAngle * weightScale_ / pixels);
+    const Frame across = Frame::fromZ(ray.direction);
+    ray.directionByPixel = {across.x, across.y};
+    connection.distance =
+        isAtInfinity ? std::numeric_limits<float>::infinity()
+                     : static_cast<float>((targetMm - arrival->entranceMm).norm() * metresPerMm);
     return connection;
 }
 
@@ -149,9 +189,7 @@ std::optional<Camera::Seen> Camera::see(const Eigen::Vector3d& targetMm, Vec2 ap
     // footprint.
     const std::optional<ExitRay> exit = lens_->trace(*sensor, aperture, nm);
     if (!exit) return {};
-    const Eigen::Vector2d film =
-        (sensor->mm - settings_.sensorOffsetMm) / pixelMm_ + filmCenter(settings_);  // (3)
-    const Seen seen{{static_cast<float>(film.x()), static_cast<float>(film.y())}, *exit};
+    const Seen seen{filmPoint(sensor->mm), *exit};
     if (!std::isfinite(seen.film.x) || !std::isfinite(seen.film.y)) return {};
     return seen;
 }
@@ -159,11 +197,11 @@ std::optional<Camera::Seen> Camera::see(const Eigen::Vector3d& targetMm, Vec2 ap
 CameraRay Camera::worldRay(const ExitRay& exit) const {
     const Transform& world = settings_.worldFromLens;
     const auto byPixel = [&](const Eigen::Vector3d& bySensor, double unit) {
-        return toFloat(world.vector(fromEigen(bySensor) * (pixelMm_ * unit)));
+        return toFloat(world.vector(toVec(bySensor) * (pixelMm_ * unit)));
     };
     return CameraRay{
-        .origin = toFloat(world.point(fromEigen(exit.origin) * metresPerMm)),
-        .direction = toFloat(world.vector(fromEigen(exit.direction))),
+        .origin = toFloat(world.point(toVec(exit.origin) * metresPerMm)),
+        .direction = toFloat(world.vector(toVec(exit.direction))),
         .weight = static_cast<float>(exit.throughput * weightScale_),  // (4)
         .originByPixel = {byPixel(exit.originBySensor.col(0), metresPerMm),
                           byPixel(exit.originBySensor.col(1), metresPerMm)},

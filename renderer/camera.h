@@ -15,6 +15,8 @@
 
 namespace etendue {
 
+class OuterPupil;
+
 /// A ray from the lens into the scene, in world space.
 struct CameraRay {
     Vec3 origin;
@@ -42,6 +44,9 @@ struct CameraSettings {
     double exposureStops = 0.0;                   // the picture times 2^stops
     /// The lens is asked at each wavelength; else at Wavelengths::rgbWavelengthNm alone.
     bool isDispersive = false;
+    /// Connections are drawn on the lens' outermost surface, in place of its aperture: for
+    /// comparison. Their densities are then not those of sampleRay.
+    std::shared_ptr<const OuterPupil> outerPupil = {};
 };
 
 /// Where `film` (pixels, full frame) lies on the sensor, from the lens' axis.
@@ -84,6 +89,10 @@ private:
     };
     std::optional<Seen> see(const Eigen::Vector3d& targetMm, Vec2 apertureUniform, double nm) const;
     double wavelengthNm(const Wavelengths& wavelengths, int lane) const;
+    std::optional<CameraConnection> connectAtOuterPupil(const Eigen::Vector3d& targetMm,
+                                                        bool isAtInfinity, Vec2 uniform,
+                                                        double nm) const;
+    Vec2 filmPoint(const Eigen::Vector2d& sensorMm) const;
     CameraRay worldRay(const ExitRay& exit) const;
 
     std::shared_ptr<const LensModel> lens_;

@@ -39,7 +39,8 @@ CameraSample drawCameraSample(const View& view, SampleId id) {
                         .film = {},
                         .apertureUniform = {},
                         .ray = {},
-                        .throughput = {}};
+                        .throughput = {},
+                        .isHeroOnly = isParted(view)};
     const Vec2 center{static_cast<float>(id.x) + 0.5f, static_cast<float>(id.y) + 0.5f};
     result.film = center + view.filter.sample(result.random.next2());
     result.apertureUniform = result.random.next2();
@@ -47,8 +48,7 @@ CameraSample drawCameraSample(const View& view, SampleId id) {
         view.camera.sampleRay(result.film, result.apertureUniform, result.color.wavelengths);
     if (!result.ray) return result;
     const float weight = result.ray->weight;
-    result.throughput =
-        isParted(view) ? Spectrum(Spectrum::lanes * weight, 0.0f, 0.0f, 0.0f) : Spectrum(weight);
+    result.throughput = isParted(view) ? heroAlone(Spectrum(weight)) : Spectrum(weight);
     return result;
 }
 

@@ -24,6 +24,7 @@ struct EstimatorSettings {
     int russianRouletteDepth = 5;  // from this depth on a path may be ended at random; 0: never
     TechniqueSet techniques;       // of bdpt
     int lightPaths = 1;            // of lt and bdpt: traced for each camera sample
+    bool usesOuterPupil = false;   // of lt: CameraSettings::outerPupil
 };
 
 /// What the samples are taken of.
@@ -93,6 +94,7 @@ struct CameraSample {
     /// The ray's weight, in the lanes that travel along it: behind a dispersive lens the hero's
     /// alone, which stands for all four.
     Spectrum throughput;
+    bool isHeroOnly = false;
 };
 CameraSample drawCameraSample(const View& view, SampleId id);
 /// The wavelengths of a sample, of its camera path and its light paths alike.

@@ -4,6 +4,7 @@
 #include "lens/axial_beam.h"
 #include "lens/fit_cache.h"
 #include "lens/fit_domain.h"
+#include "lens/outer_pupil.h"
 #include "lens/polynomial_lens.h"
 #include "renderer/camera_focus.h"
 #include "renderer/scene_parts.h"
@@ -90,7 +91,7 @@ FitSettings loadFitSettings(const ConfigTable& table, const std::string& represe
 
 }  // namespace
 
-std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, const CameraSettings& camera,
+std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, CameraSettings& camera,
                                           const LoadOptions& options, LoadingScene& loading,
                                           LoadedScene& loaded) {
     const std::filesystem::path file = table.file("lens");
@@ -103,6 +104,8 @@ std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, const Camera
     table.finish();  // a mistyped key is reported now, and not after seconds of fitting
     loaded.fNumber = settings.fNumber.value_or(prescription.stated.fNumber);
     loaded.focusDistance = 1e-3 * settings.focusDistanceMm;
+    if (loaded.estimator.usesOuterPupil)
+        camera.outerPupil = std::make_shared<OuterPupil>(makeTracedLens(prescription, settings));
     if (representation == "traced") return makeTracedLens(prescription, settings);
 
     DomainRequest request;

@@ -39,7 +39,12 @@ std::unique_ptr<Bsdf> bsdfFrom(const ConfigTable& table, LoadingScene& loading) 
     if (type == "dielectric") {
         const Spectrum tint =
             table.has("color") ? color(table, "color", Range::unit()) : rgb(1, 1, 1);
-        return makeDielectric(ior(), tint, roughness());
+        if (!table.has("abbe_number")) return makeDielectric(ior(), tint, roughness());
+        if (roughness() > 0.0f)
+            table.fail("abbe_number", "only smooth dielectrics disperse: roughness must be 0");
+        loading.isDispersive = true;
+        const double abbeNumber = table.number("abbe_number", {1.0, 1000.0});
+        return makeDispersiveDielectric(ior(), static_cast<float>(abbeNumber), tint);
     }
     Texture reflectance =
         textureOr(table, "color", Spectrum(rgb(1, 1, 1) * greyReflectance), loading);

@@ -57,7 +57,7 @@ struct VertexDensity {
 
 /// How many samples the techniques take together for one camera sample of every pixel.
 struct SampleCounts {
-    TechniqueSet techniques;
+    const TechniqueSet& techniques;
     /// Light paths, each of them connected to the lens: it may fall on any pixel. All other
     /// techniques take one sample.
     double lightPaths = 1.0;

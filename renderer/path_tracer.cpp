@@ -18,8 +18,9 @@ public:
              RandomStream& random)
         : scene_(scene), wavelengths_(wavelengths), settings_(settings), random_(random) {}
 
-    Spectrum radiance(Ray ray) {
-        Spectrum result, throughput(1.0f);
+    /// `throughput`: of the ray; `isHeroOnly`: in its first lane alone, which stands for all four.
+    Spectrum radiance(Ray ray, Spectrum throughput, bool isHeroOnly) {
+        Spectrum result, attenuation(1.0f);
         // The density with which the last scattering drew the ray; none after the camera or a Dirac
         // lobe, where no light sample competes.
         std::optional<float> pdfSolidAngle;
@@ -42,7 +43,12 @@ public:
                 sampleScattering(*point, context, wo, uLobe, random_.next2());
             if (!next) return result;
             throughput *= next->weight;
-            if (!survivesRoulette(throughput, depth)) return result;
+            attenuation *= next->weight;
+            if (next->isHeroOnly && !isHeroOnly) {
+                throughput = heroAlone(throughput);
+                isHeroOnly = true;
+            }
+            if (!survivesRoulette(throughput, attenuation, depth)) return result;
             pdfSolidAngle = next->isDirac ? std::nullopt : std::optional(next->pdfSolidAngle);
             ray = {offsetOrigin(*point, next->wi), next->wi};
         }
@@ -94,12 +100,13 @@ private:
         return scattering.value * wavelengths_.lanesOf(sample->radiance) * (weight / lightPdf);
     }
 
-    bool survivesRoulette(Spectrum& throughput, int depth) {
+    bool survivesRoulette(Spectrum& throughput, Spectrum& attenuation, int depth) {
         if (settings_.russianRouletteDepth == 0 || depth < settings_.russianRouletteDepth)
             return true;
-        const float survival = std::min(1.0f, maxLane(throughput));
+        const float survival = std::min(1.0f, maxLane(attenuation));
         if (!(random_.next() < survival)) return false;
         throughput /= survival;
+        attenuation /= survival;
         return true;
     }
 
@@ -121,12 +128,12 @@ public:
         CameraSample camera = drawCameraSample(view, id);
         if (!camera.ray) return;
         if (request.firstHit) result.firstHit = firstHitOf(view.scene, *camera.ray);
-        const Spectrum radiance =
-            pathTracedRadiance(view.scene, {camera.ray->origin, camera.ray->direction},
-                               camera.color.wavelengths, settings_, camera.random);
-        result.contributions.push_back({.technique = {},
-                                        .value = camera.color.onFilm(radiance * camera.throughput),
-                                        .film = camera.film});
+        const Spectrum value =
+            PathWalk(view.scene, camera.color.wavelengths, settings_, camera.random)
+                .radiance({camera.ray->origin, camera.ray->direction}, camera.throughput,
+                          isParted(view));
+        result.contributions.push_back(
+            {.technique = {}, .value = camera.color.onFilm(value), .film = camera.film});
     }
 
 private:
@@ -137,7 +144,7 @@ private:
 
 Spectrum pathTracedRadiance(const Scene& scene, const Ray& ray, const Wavelengths& wavelengths,
                             const EstimatorSettings& settings, RandomStream& random) {
-    return PathWalk(scene, wavelengths, settings, random).radiance(ray);
+    return PathWalk(scene, wavelengths, settings, random).radiance(ray, Spectrum(1.0f), false);
 }
 
 std::unique_ptr<Estimator> makePathTracer(const EstimatorSettings& settings) {

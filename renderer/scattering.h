@@ -56,8 +56,12 @@ inline std::optional<BsdfSample> sampleScattering(const SurfacePoint& point,
     const Vec3 wi = renormalize(point.shading.worldFromLocal(sample->wi));
     if (!sidesAgree(point, wi, sample->wi.z)) return std::nullopt;
     const float factor = shadingNormalFactor(point, context.transport, wo, localWo, wi, sample->wi);
-    return BsdfSample{wi, sample->weight * factor, sample->pdfSolidAngle,
-                      sample->pdfSolidAngleReverse, sample->isDirac};
+    return BsdfSample{wi,
+                      sample->weight * factor,
+                      sample->pdfSolidAngle,
+                      sample->pdfSolidAngleReverse,
+                      sample->isDirac,
+                      sample->isHeroOnly};
 }
 
 }  // namespace etendue

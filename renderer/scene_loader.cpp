@@ -60,6 +60,9 @@ void loadEstimator(const ConfigTable& table, LoadedScene& loaded) {
     e.russianRouletteDepth = static_cast<int>(
         table.integer("russian_roulette_depth", {0, 10000}, e.russianRouletteDepth));
     e.lightPaths = static_cast<int>(table.integer("light_paths", {1, 1024}, e.lightPaths));
+    e.usesOuterPupil = table.choice("pupil_sampling", {"aperture", "outer"}, "aperture") == "outer";
+    if (e.usesOuterPupil && e.kind != "lt")
+        table.fail("pupil_sampling", "\"outer\" is for kind = \"lt\"");
     if (table.has("techniques")) {
         if (e.kind != "bdpt") table.fail("techniques", "is for kind = \"bdpt\"");
         const auto set = TechniqueSet::parse(table.text("techniques"));
@@ -162,7 +165,11 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
         loadCamera(root.table("camera"), options, loading, loaded);
     else
         addAutomaticCamera(loaded);
-    if (loaded.camera->settings().isDispersive) loaded.film.color = FilmColor::xyz;
+    if (loaded.camera->settings().isDispersive || loading.isDispersive)
+        loaded.film.color = FilmColor::xyz;
+    if (loaded.estimator.usesOuterPupil && !loaded.camera->settings().outerPupil)
+        root.table("estimator")
+            .fail("pupil_sampling", "\"outer\" needs a camera with a lens of glass");
     loaded.hash = contentHash(loading.files, options.overrides);
     loaded.notes = std::move(loading.notes);
     return loaded;

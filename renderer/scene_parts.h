@@ -20,6 +20,7 @@ struct LoadingScene {
     std::map<std::string, const Material*> materials;  // the scene file's own, by name
     std::map<std::string, std::shared_ptr<const Texture>> textures;  // by path and encoding
     const Material* defaultMaterial = nullptr;
+    bool isDispersive = false;  // some material is
 };
 
 /// [camera]. The scene must exist: it may be focused on.
@@ -29,8 +30,8 @@ void loadCamera(const ConfigTable& table, const LoadOptions& options, LoadingSce
 /// (docs/camera.md, "Which way is up").
 Transform lookAt(Vec3d from, Vec3d to, Vec3d up);
 
-/// [camera] lens = …
-std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, const CameraSettings& camera,
+/// [camera] lens = …; sets the camera's outer pupil if the estimator asks for it.
+std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, CameraSettings& camera,
                                           const LoadOptions& options, LoadingScene& loading,
                                           LoadedScene& loaded);
 

@@ -78,6 +78,9 @@ inline float maxLane(const Spectrum& s) {
     return std::max(std::max(s[0], s[1]), std::max(s[2], s[3]));
 }
 
+/// The first lane, the hero's, standing for all four.
+inline Spectrum heroAlone(const Spectrum& s) { return {Spectrum::lanes * s[0], 0.0f, 0.0f, 0.0f}; }
+
 /// A scalar to choose by (light power, Russian roulette), not a colour measurement: the mean of the
 /// lanes in use.
 inline float brightness(const Spectrum& s) { return (s[0] + s[1] + s[2]) * (1.0f / 3.0f); }

@@ -46,9 +46,8 @@ std::vector<long double> absoluteDensities(const std::vector<VertexDensity>& pat
 
 TEST_CASE("MIS: weights match the product of all densities, and those of all techniques sum to 1") {
     for (const char* list : {"", "t1", "s0,s1", "s2t2,s1t3,s0t4,t1"}) {
-        SampleCounts counts;
-        if (*list) counts.techniques = *TechniqueSet::parse(list);
-        counts.lightPaths = 1000.0;
+        const TechniqueSet techniques = *list ? *TechniqueSet::parse(list) : TechniqueSet();
+        const SampleCounts counts{techniques, 1000.0};
         int checked = 0;
         for (std::uint32_t i = 0; i < 20000; ++i) {
             RandomStream random(1, i, 0, RandomDomain::test);
@@ -75,8 +74,10 @@ TEST_CASE("MIS: weights match the product of all densities, and those of all tec
 TEST_CASE("MIS: a technique of infinite density takes the whole weight") {
     const float infinity = std::numeric_limits<float>::infinity();
     const std::vector<VertexDensity> path = {{0, 0, true}, {infinity, 2, true}, {3, 5, true}};
-    CHECK(balanceWeight(path, {2, 1}, {}) == 0.0f);
-    const float sum = balanceWeight(path, {1, 2}, {}) + balanceWeight(path, {0, 3}, {});
+    const TechniqueSet all;
+    const SampleCounts counts{all};
+    CHECK(balanceWeight(path, {2, 1}, counts) == 0.0f);
+    const float sum = balanceWeight(path, {1, 2}, counts) + balanceWeight(path, {0, 3}, counts);
     CHECK(sum == doctest::Approx(1.0));
 }
 

@@ -71,9 +71,12 @@ std::optional<Eigen::Vector2d> PolynomialLens::firstGuess(const Eigen::Vector3d&
     if (!(sight.field.norm() <= widestField_ + sight.nearness)) return {};
     const PolynomialValues<double> at = start_.values({sight.field, aperture.mm, wavelengthNm});
     const double k = std::min(sight.nearness, 1.0), bent = k + nearnessBend_ * k * k;
-    return Eigen::Vector2d(at[0] + bent * at[2], at[1] + bent * at[3])
-        .cwiseMax(-domain_.sensorHalfSizeMm)
-        .cwiseMin(domain_.sensorHalfSizeMm);
+    const Eigen::Vector2d guess(at[0] + bent * at[2], at[1] + bent * at[3]);
+    // Guesses miss by thousandths of the sensor: one so far outside means that no point inside sees
+    // the target, and searching for one would cost ten times what finding one does.
+    constexpr double margin = 1.1;
+    if (!(guess.cwiseAbs().array() <= margin * domain_.sensorHalfSizeMm.array()).all()) return {};
+    return guess.cwiseMax(-domain_.sensorHalfSizeMm).cwiseMin(domain_.sensorHalfSizeMm);
 }
 
 Connection PolynomialLens::solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture,

@@ -24,7 +24,7 @@ PolynomialLens::PolynomialLens(const Prescription& prescription, const LensFit& 
     if (aperture.radiusMm() > fit.domain.apertureRadiusMm * rounding)
         throw std::invalid_argument("polynomial lens: the aperture is wider than the fit's domain");
     const ParaxialData data = paraxialData(OpticalSystem(prescription));
-    focalLengthMm_ = 0.5 * (data.x.focalLengthMm + data.y.focalLengthMm);
+    focalLengthMm_ = 0.5 * std::abs(data.x.focalLengthMm + data.y.focalLengthMm);
 }
 
 std::optional<ExitRay> PolynomialLens::trace(SensorPoint sensor, AperturePoint aperture,
@@ -72,10 +72,13 @@ std::optional<Eigen::Vector2d> PolynomialLens::firstGuess(const Eigen::Vector3d&
     const PolynomialValues<double> at = start_.values({sight.field, aperture.mm, wavelengthNm});
     const double k = std::min(sight.nearness, 1.0), bent = k + nearnessBend_ * k * k;
     const Eigen::Vector2d guess(at[0] + bent * at[2], at[1] + bent * at[3]);
-    // Guesses miss by thousandths of the sensor: one so far outside means that no point inside sees
-    // the target, and searching for one would cost ten times what finding one does.
+    // Guesses miss by thousandths of the sensor, from the distance of the wander on: one so far
+    // outside means that no point inside sees the target, and searching for one would cost ten
+    // times what finding one does.
     constexpr double margin = 1.1;
-    if (!(guess.cwiseAbs().array() <= margin * domain_.sensorHalfSizeMm.array()).all()) return {};
+    const bool isOutside =
+        !(guess.cwiseAbs().array() <= margin * domain_.sensorHalfSizeMm.array()).all();
+    if (isOutside && sight.nearness <= 1.0) return {};
     return guess.cwiseMax(-domain_.sensorHalfSizeMm).cwiseMin(domain_.sensorHalfSizeMm);
 }
 

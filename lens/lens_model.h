@@ -29,6 +29,12 @@ struct ExitRay {
     double throughput;                              // J τ of equation (1), per mm² of aperture
 };
 
+/// The sensor point that sees a target, and the ray from it.
+struct Sighting {
+    SensorPoint sensor;
+    ExitRay ray;
+};
+
 class LensModel {
 public:
     virtual ~LensModel() = default;
@@ -42,6 +48,17 @@ public:
     virtual std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm,
                                                AperturePoint aperture,
                                                double wavelengthNm) const = 0;
+
+    /// connect(), with the ray that trace() makes there; a lens that has searched may give that of
+    /// a sensor point nearer than its search's tolerance.
+    virtual std::optional<Sighting> see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                                        double wavelengthNm) const {
+        const std::optional<SensorPoint> sensor = connect(targetMm, aperture, wavelengthNm);
+        if (!sensor) return {};
+        const std::optional<ExitRay> ray = trace(*sensor, aperture, wavelengthNm);
+        if (!ray) return {};
+        return Sighting{*sensor, *ray};
+    }
 
     /// Uniform over the aperture's area. `u` in [0, 1)².
     virtual AperturePoint sampleAperture(Eigen::Vector2d u) const = 0;

@@ -57,9 +57,7 @@ std::optional<SensorPoint> PolynomialLens::connect(const Eigen::Vector3d& target
 
 Connection PolynomialLens::solve(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                  double wavelengthNm, ConnectMethod method) const {
-    if (!targetMm.allFinite() || !aperture_.contains(aperture.mm) ||
-        !domain_.contains({{0.0, 0.0}}, aperture, wavelengthNm))
-        return {ConnectStatus::outOfField, {}, 0};
+    if (!canSee(targetMm, aperture, wavelengthNm)) return {ConnectStatus::outOfField, {}, 0};
     return method == ConnectMethod::newton ? solveByNewton(targetMm, aperture, wavelengthNm)
                                            : solveByTwoSteps(targetMm, aperture, wavelengthNm);
 }
@@ -84,8 +82,34 @@ std::optional<Eigen::Vector2d> PolynomialLens::firstGuess(const Eigen::Vector3d&
 
 Connection PolynomialLens::solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture,
                                          double wavelengthNm) const {
+    Connection connection;
+    const std::optional<Aimed> end = aim(target, aperture, wavelengthNm, connection);
+    if (connection.status == ConnectStatus::found) connection.sensor = SensorPoint{end->sensor};
+    return connection;
+}
+
+std::optional<Sighting> PolynomialLens::see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                                            double wavelengthNm) const {
+    if (!canSee(targetMm, aperture, wavelengthNm)) return {};
+    Connection connection;
+    const std::optional<Aimed> end = aim(targetMm, aperture, wavelengthNm, connection);
+    if (connection.status != ConnectStatus::found) return {};
+    return Sighting{{end->sensor}, end->ray};
+}
+
+bool PolynomialLens::canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                            double wavelengthNm) const {
+    return targetMm.allFinite() && aperture_.contains(aperture.mm) &&
+           domain_.contains({{0.0, 0.0}}, aperture, wavelengthNm);
+}
+
+std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, AperturePoint aperture,
+                                         double wavelengthNm, Connection& connection) const {
     const std::optional<Eigen::Vector2d> guess = firstGuess(target, aperture, wavelengthNm);
-    if (!guess) return {ConnectStatus::outOfField, {}, 0};
+    if (!guess) {
+        connection.status = ConnectStatus::outOfField;
+        return {};
+    }
     const auto exit = [&](const Eigen::Vector2d& s,
                           double apertureShare) -> std::optional<ExitRay> {
         // A little beyond the domain, for searches to overshoot; far beyond it powers overflow.
@@ -96,11 +120,10 @@ Connection PolynomialLens::solveByNewton(const Eigen::Vector3d& target, Aperture
     TargetSolver solver(exit, focalLengthMm_);
     std::optional<Aimed> end = solver.newton(target, *guess);
     if (!end) end = solver.follow(target);
-    Connection connection{ConnectStatus::unsolved, {}, solver.steps()};
-    if (!end) return connection;
-    connection.status = statusOf({end->sensor}, end->ray, aperture, wavelengthNm);
-    if (connection.status == ConnectStatus::found) connection.sensor = SensorPoint{end->sensor};
-    return connection;
+    connection.iterations = solver.steps();
+    connection.status =
+        end ? statusOf({end->sensor}, end->ray, aperture, wavelengthNm) : ConnectStatus::unsolved;
+    return end;
 }
 
 Connection PolynomialLens::solveByTwoSteps(const Eigen::Vector3d& target, AperturePoint aperture,

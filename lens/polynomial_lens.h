@@ -6,6 +6,7 @@
 
 #include "lens/connection.h"
 #include "lens/fitted_map.h"
+#include "lens/target_solver.h"
 
 namespace etendue {
 
@@ -23,6 +24,8 @@ public:
     /// By ConnectMethod::newton, from the fit's own first guess (sensor_fits.h).
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                        double wavelengthNm) const override;
+    std::optional<Sighting> see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                                double wavelengthNm) const override;
     AperturePoint sampleAperture(Eigen::Vector2d u) const override;
     double apertureAreaMm2() const override { return aperture_.areaMm2(); }
 
@@ -37,6 +40,10 @@ private:
                                               double wavelengthNm) const;
     ConnectStatus statusOf(SensorPoint sensor, const ExitRay& ray, AperturePoint aperture,
                            double wavelengthNm) const;
+    bool canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm) const;
+    /// The end of our search, and how it went; the connection's sensor point is not set.
+    std::optional<Aimed> aim(const Eigen::Vector3d& target, AperturePoint aperture,
+                             double wavelengthNm, Connection& connection) const;
     Connection solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture,
                              double wavelengthNm) const;
     Connection solveByTwoSteps(const Eigen::Vector3d& target, AperturePoint aperture,

@@ -183,13 +183,11 @@ double Camera::wavelengthNm(const Wavelengths& wavelengths, int lane) const {
 std::optional<Camera::Seen> Camera::see(const Eigen::Vector3d& targetMm, Vec2 apertureUniform,
                                         double nm) const {
     const AperturePoint aperture = lens_->sampleAperture(toEigen(apertureUniform));
-    const std::optional<SensorPoint> sensor = lens_->connect(targetMm, aperture, nm);
-    if (!sensor) return {};
-    // The very ray that sampleRay would make, so that both directions share one weight and one
+    // The ray that sampleRay would make, so that both directions share one weight and one
     // footprint.
-    const std::optional<ExitRay> exit = lens_->trace(*sensor, aperture, nm);
-    if (!exit) return {};
-    const Seen seen{filmPoint(sensor->mm), *exit};
+    const std::optional<Sighting> sighting = lens_->see(targetMm, aperture, nm);
+    if (!sighting) return {};
+    const Seen seen{filmPoint(sighting->sensor.mm), sighting->ray};
     if (!std::isfinite(seen.film.x) || !std::isfinite(seen.film.y)) return {};
     return seen;
 }

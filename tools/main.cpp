@@ -93,12 +93,8 @@ void addRender(CLI::App& app, RenderCommand& c) {
             CLI::IsMember({"albedo", "normal", "depth", "position", "variance"}).description(""))
         ->type_name("LIST");
     render
-        ->add_option_function<std::string>(
-            "--techniques",
-            [&c](const std::string& list) {
-                c.overrides.push_back("estimator.techniques=" + list);
-            },
-            "Of bdpt: only these, such as s0t2,s2t1; t1: all that connect to the lens")
+        ->add_option("--techniques", c.techniques,
+                     "Of bdpt: only these, such as s0t2,s2t1; t1: all that connect to the lens")
         ->type_name("LIST");
     render
         ->add_option("--technique-images", c.techniqueImages,

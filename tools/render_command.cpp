@@ -115,6 +115,8 @@ void printNotes(const LoadedScene& loaded, bool isQuiet) {
 LoadOptions loadOptions(const RenderCommand& command, int threads) {
     LoadOptions options{command.overrides, threads, fitCacheDirectory()};
     options.camera = command.camera;
+    if (!command.techniques.empty())
+        options.overrides.push_back("estimator.techniques=" + command.techniques);
     if (!command.size.empty()) {
         options.overrides.push_back(fmt::format("film.width={}", command.size[0]));
         options.overrides.push_back(fmt::format("film.height={}", command.size[1]));
@@ -160,19 +162,16 @@ void checkWritable(const std::filesystem::path& file, const std::string& extensi
 }
 
 /// What only some estimators can give.
-void checkEstimator(const RenderCommand& command, const Estimator& estimator) {
-    if (estimator.lightPathsPerSample() == 0) {
-        if (!command.techniqueImages.empty())
-            throw InputError(
-                "--technique-images: the estimator is \"pt\", which has none; "
-                "-s estimator.kind=bdpt has",
-                ExitCode::usage);
-        return;
-    }
-    if (layersFor(command).variance)
+void checkEstimator(const RenderCommand& command, const std::string& kind) {
+    if (kind == "pt" && !command.techniqueImages.empty())
         throw InputError(
-            "--layers variance: light paths fall all over the picture, and their "
-            "spread within a pixel is not recorded; -s estimator.kind=pt has it",
+            "--technique-images: the estimator is \"pt\", which has none; -s estimator.kind=bdpt "
+            "has",
+            ExitCode::usage);
+    if (kind != "pt" && layersFor(command).variance)
+        throw InputError(
+            "--layers variance: light paths fall all over the picture, and their spread within a "
+            "pixel is not recorded; -s estimator.kind=pt has it",
             ExitCode::usage);
 }
 
@@ -204,7 +203,7 @@ ExitCode runRender(const RenderCommand& command) {
     settings.seed = command.seed;
     settings.threads = threads;
     if (command.timeLimitSeconds) settings.timeLimitSeconds = *command.timeLimitSeconds;
-    checkEstimator(command, *estimator);
+    checkEstimator(command, loaded.estimator.kind);
     TechniqueImages techniques(film.window(), film.color());
     if (!command.techniqueImages.empty()) settings.techniqueImages = &techniques;
 

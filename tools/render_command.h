@@ -20,6 +20,7 @@ struct RenderCommand {
     std::vector<int> size;  // width, height, or empty
     std::vector<int> crop;  // x, y, width, height, or empty
     std::vector<std::string> overrides;
+    std::string techniques;           // of bdpt, or empty
     std::vector<std::string> layers;  // albedo, normal, depth, position, variance
     double previewExposureStops = 0.0;
     ProgressStyle progress = ProgressStyle::automatic;

@@ -165,16 +165,31 @@ TEST_CASE("Camera: what the lens blocks on the axis is made up for by the rest")
 }
 
 TEST_CASE("Camera: the first wavelength is the one traced, against a sensor set at 550 nm") {
-    const Camera camera(std::make_shared<TintedLens>(makePinhole(50.0)), settingsFor(720, 480));
+    CameraSettings settings = settingsFor(720, 480);
+    settings.isDispersive = true;
+    const Camera camera(std::make_shared<TintedLens>(makePinhole(50.0)), settings);
     for (const float nm : {400.0f, 550.0f, 700.0f}) {
-        const Wavelengths wavelengths{{nm, 1.0f, 1.0f, 1.0f}};
+        Wavelengths wavelengths;
+        wavelengths.nm = {nm, 450.0f, 1.0f, 1.0f};
         const auto ray = camera.sampleRay({360.0f, 240.0f}, {}, wavelengths);
         REQUIRE(ray.has_value());
         CHECK(ray->weight == doctest::Approx(nm / 550.0f).epsilon(2 * epsilon));
         const auto connection = camera.connect({0.0f, 0.0f, 3.0f}, {}, wavelengths);
         REQUIRE(connection.has_value());
         CHECK(connection->ray.weight == ray->weight);
+        const auto second = camera.connect({0.0f, 0.0f, 3.0f}, {}, wavelengths, 1);
+        REQUIRE(second.has_value());
+        CHECK(second->ray.weight == doctest::Approx(450.0 / 550.0).epsilon(2 * epsilon));
     }
+}
+
+TEST_CASE("Camera: without dispersion every wavelength goes the way of 550 nm") {
+    const Camera camera(std::make_shared<TintedLens>(makePinhole(50.0)), settingsFor(720, 480));
+    Wavelengths wavelengths;
+    wavelengths.nm = {400.0f, 1.0f, 1.0f, 1.0f};
+    const auto ray = camera.sampleRay({360.0f, 240.0f}, {}, wavelengths);
+    REQUIRE(ray.has_value());
+    CHECK(ray->weight == doctest::Approx(1.0).epsilon(2 * epsilon));
 }
 
 TEST_CASE("Camera: nothing connects behind the lens, in its plane, at its centre, or at no point") {

@@ -8,6 +8,7 @@
 #include "renderer/random.h"
 #include "renderer/sampling.h"
 #include "renderer/shapes.h"
+#include "renderer/visibility.h"
 #include "tests/support/scenes.h"
 
 using namespace etendue;
@@ -135,4 +136,41 @@ material = "veil"
     const double error = 4.0 * std::sqrt(0.3 * 0.7 / count);
     CHECK(std::abs(hits / static_cast<double>(count) - 0.3) < error);
     CHECK(hits == occlusions);
+}
+
+TEST_CASE("Visibility: a ray that ends on a surface is not stopped by that surface") {
+    // Each end has small coordinates where the ray comes from large ones, and the other way round:
+    // the intersector rounds in proportion to both.
+    for (const double distance : {0.3, 2.0, 50.0, 3000.0})
+        for (const double shift : {0.0, 1e-3, 64.0}) {
+            const std::string text =
+                "[[mesh]]\nshape = \"rectangle\"\ntransform = [{scale = 0.25}, {rotate = [1, 0, 0, "
+                "-90]}, {rotate = [0, 0, 1, 3]}, {translate = [" +
+                std::to_string(shift) + ", " + std::to_string(shift) +
+                ", 0]}]\n[[light]]\ntype = \"constant\"\nradiance = [1, 1, 1]\n";
+            const LoadedScene loaded = sceneFromText(text);
+            int hits = 0, stopped = 0;
+            for (std::uint32_t i = 0; i < 5000; ++i) {
+                RandomStream random(3, i, 0, RandomDomain::test);
+                const float s = static_cast<float>(shift), d = static_cast<float>(distance);
+                const Vec3 from{s + d * (random.next() - 0.5f), s + d, d * (random.next() - 0.5f)};
+                const Vec3 aim{s + 0.4f * (random.next() - 0.5f), s, 0.4f * (random.next() - 0.5f)};
+                const auto end = loaded.scene->closestHit({from, normalize(aim - from)});
+                if (!end) continue;
+                ++hits;
+                const SurfacePoint start = bareSurfacePoint(from, {}, {0, 1, 0});
+                stopped += !isVisible(*loaded.scene, start, *end);
+                const LightSample sample{.direction = normalize(end->position - from),
+                                         .distance = length(end->position - from),
+                                         .position = end->position,
+                                         .positionError = end->positionError,
+                                         .normal = end->geometricNormal,
+                                         .radiance = {}};
+                stopped += !isVisible(*loaded.scene, start, sample);
+            }
+            CAPTURE(distance);
+            CAPTURE(shift);
+            CHECK(hits > 1000);
+            CHECK(stopped == 0);
+        }
 }

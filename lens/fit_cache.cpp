@@ -4,6 +4,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "lens/hash.h"
+
 namespace etendue {
 
 std::filesystem::path fitCacheDirectory() {
@@ -26,13 +28,11 @@ std::filesystem::path fitCacheFile(const std::filesystem::path& directory, const
         all << number << ' ';
     for (const int number : {static_cast<int>(s.form), static_cast<int>(s.basis), s.terms, s.degree,
                              s.raysPerCandidate, s.refinements, s.clip.terms, s.clip.degree,
-                             static_cast<int>(s.clip.rays)})
+                             static_cast<int>(s.clip.rays), key.algorithm})
         all << number << ' ';
-    std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
-    for (const char c : all.str()) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
     std::ostringstream name;
     name << std::hex << std::setfill('0') << std::setw(16) << key.prescriptionHash << '-'
-         << std::setw(16) << hash << ".json";
+         << std::setw(16) << fnv1a(all.str()) << ".json";
     return directory / name.str();
 }
 
@@ -56,6 +56,7 @@ LensFit cachedFit(const Prescription& prescription, const FitDomain& domain,
     if (directory.empty()) return fit;
     try {
         std::filesystem::create_directories(directory, failed);
+        removeStaleParts(directory);
         writeFitFile(file, fit);
     } catch (const std::runtime_error& error) {
         tell(std::string("the fit is not kept: ") + error.what());

@@ -3,12 +3,17 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <sstream>
 #include <stdexcept>
 
+#include "lens/fit_check.h"
+#include "lens/hash.h"
 #include "lens/polynomial.h"
 
 namespace etendue {
@@ -17,18 +22,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* formatName = "etendue lens fit 5";
+constexpr std::string_view partSuffix = ".part";
+constexpr const char* formatName = "etendue lens fit 6";
 constexpr std::uintmax_t largestFileBytes = 64u << 20;
 
 struct Refusal : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
-
-std::uint64_t fnv1a(const std::string& text) {
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-    return hash;
-}
 
 std::string hex(std::uint64_t number) {
     std::ostringstream text;
@@ -185,11 +185,18 @@ Json jsonOf(const RayCounts& c) {
             {"passed", c.passed},
             {"blocked", c.blocked},
             {"folded", c.folded},
+            {"unsolved", c.unsolved},
+            {"beside_pupil", c.besidePupil},
             {"folded_light", c.foldedLight}};
 }
 RayCounts countsFrom(const Json& json) {
     const auto count = [&](const char* key) { return json.at(key).get<std::int64_t>(); };
-    return {count("drawn"), count("passed"), count("blocked"), count("folded"),
+    return {count("drawn"),
+            count("passed"),
+            count("blocked"),
+            count("folded"),
+            count("unsolved"),
+            count("beside_pupil"),
             json.at("folded_light").get<double>()};
 }
 
@@ -201,7 +208,8 @@ std::vector<std::size_t> surfacesFrom(const Json& json) {
 }
 
 Json jsonOf(const LensFit& fit) {
-    return {{"prescription", hex(fit.prescriptionHash)},
+    return {{"algorithm", fit.algorithm},
+            {"prescription", hex(fit.prescriptionHash)},
             {"domain", jsonOf(fit.domain)},
             {"settings", jsonOf(fit.settings)},
             {"exit", jsonOf(fit.exit)},
@@ -223,6 +231,7 @@ Json jsonOf(const LensFit& fit) {
 }
 LensFit fitFrom(const Json& json) {
     LensFit fit;
+    fit.algorithm = wholeFrom(json.at("algorithm"), 0, 1'000'000);
     fit.prescriptionHash = std::stoull(json.at("prescription").get<std::string>(), nullptr, 16);
     fit.domain = domainFrom(json.at("domain"));
     fit.settings = settingsFrom(json.at("settings"));
@@ -232,8 +241,6 @@ LensFit fitFrom(const Json& json) {
     fit.clip.surfaces = surfacesFrom(clip.at("surfaces"));
     fit.clip.reflecting = surfacesFrom(clip.at("reflecting"));
     fit.clip.squares = polynomialFrom(clip.at("squares"));
-    if (fit.clip.squares.outputs.total() != static_cast<int>(fit.clip.count()))
-        throw Refusal("clipping surfaces and polynomials differ in number");
     fit.clipErrors = {clip.at("wrongly_accepted").get<double>(),
                       clip.at("wrongly_blocked").get<double>()};
     const Json& start = json.at("start");
@@ -242,6 +249,7 @@ LensFit fitFrom(const Json& json) {
     fit.slope = polynomialFrom(json.at("slope"));
     fit.training = countsFrom(json.at("training"));
     fit.errors = errorsFrom(json.at("errors"));
+    if (const auto fault = findFault(fit)) throw Refusal(*fault);
     return fit;
 }
 
@@ -277,21 +285,43 @@ LensFit parsed(const std::string& text) {
     }
 }
 
-void writeSynced(const std::filesystem::path& file, const std::string& text) {
-    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-    if (descriptor < 0) throw std::runtime_error(file.string() + ": cannot be written");
+/// The system call again for as long as signals interrupt it.
+template <class Call>
+auto uninterrupted(const Call& call) {
+    auto result = call();
+    while (result < 0 && errno == EINTR) result = call();
+    return result;
+}
+
+/// A new file beside `file`, of a name that no other process, thread or container takes.
+struct PartFile {
+    std::filesystem::path path;
+    int descriptor;
+};
+PartFile newPartFile(const std::filesystem::path& file) {
+    std::random_device random;
+    for (int attempt = 0; attempt < 100; ++attempt) {
+        std::filesystem::path path = file;
+        path += "." + hex((std::uint64_t{random()} << 32) | random()) + std::string(partSuffix);
+        const int descriptor = uninterrupted(
+            [&] { return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644); });
+        if (descriptor >= 0) return {path, descriptor};
+        if (errno != EEXIST) break;
+    }
+    throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+/// Closes the descriptor; false when not all is on the disk.
+bool writeSynced(int descriptor, const std::string& text) {
     bool good = true;
     for (std::size_t done = 0; good && done < text.size();) {
-        const ssize_t count = ::write(descriptor, text.data() + done, text.size() - done);
+        const ssize_t count = uninterrupted(
+            [&] { return ::write(descriptor, text.data() + done, text.size() - done); });
         good = count > 0;
         if (good) done += static_cast<std::size_t>(count);
     }
-    good = ::fsync(descriptor) == 0 && good;
-    good = ::close(descriptor) == 0 && good;
-    if (good) return;
-    std::error_code ignored;
-    std::filesystem::remove(file, ignored);
-    throw std::runtime_error(file.string() + ": cannot be written; is the disk full?");
+    good = uninterrupted([&] { return ::fsync(descriptor); }) == 0 && good;
+    return ::close(descriptor) == 0 && good;
 }
 
 }  // namespace
@@ -304,21 +334,31 @@ std::string fitFileText(const LensFit& fit) {
 }
 
 void writeFitFile(const std::filesystem::path& file, const LensFit& fit) {
-    std::filesystem::path beside = file;
-    beside += "." + std::to_string(::getpid()) + ".part";
+    const PartFile part = newPartFile(file);
     std::error_code failed;
-    std::filesystem::remove(beside, failed);  // of a process of that number, long gone
-    writeSynced(beside, fitFileText(fit));
-    std::filesystem::rename(beside, file, failed);
-    if (failed) {
-        std::filesystem::remove(beside, failed);
-        throw std::runtime_error(file.string() + ": cannot be written");
+    const bool written = writeSynced(part.descriptor, fitFileText(fit));
+    if (written) std::filesystem::rename(part.path, file, failed);
+    if (written && !failed) return;
+    std::filesystem::remove(part.path, failed);
+    throw std::runtime_error(file.string() + ": cannot be written" +
+                             (written ? "" : "; is the disk full?"));
+}
+
+void removeStaleParts(const std::filesystem::path& directory) {
+    const auto dayAgo = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24);
+    std::error_code failed;
+    std::filesystem::directory_iterator entry(directory, failed), end;
+    for (; !failed && entry != end; entry.increment(failed)) {
+        std::error_code ignored;
+        if (entry->path().extension() != partSuffix) continue;
+        const auto written = std::filesystem::last_write_time(entry->path(), ignored);
+        if (!ignored && written < dayAgo) std::filesystem::remove(entry->path(), ignored);
     }
 }
 
 FitKey fitKey(const Prescription& prescription, const FitDomain& domain,
               const FitSettings& settings) {
-    return {contentHash(prescription), domain, settings};
+    return {contentHash(prescription), domain, settings, fitAlgorithmVersion};
 }
 
 FitFileContent readFitFile(const std::filesystem::path& file) {
@@ -336,6 +376,7 @@ FitFileContent readFitFile(const std::filesystem::path& file, const FitKey& key)
     const auto refuse = [&](const char* what) {
         return FitFileContent{{}, file.string() + ": stale: fitted " + what};
     };
+    if (fit.algorithm != key.algorithm) return refuse("by another version of the method");
     if (fit.prescriptionHash != key.prescriptionHash) return refuse("to another prescription");
     if (fit.domain != key.domain) return refuse("in another domain");
     if (fit.settings != key.settings) return refuse("with other settings");

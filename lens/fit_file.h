@@ -18,19 +18,24 @@ std::string fitFileText(const LensFit& fit);
 /// std::runtime_error, naming the file, when that fails.
 void writeFitFile(const std::filesystem::path& file, const LensFit& fit);
 
+/// Removes what writes that were killed left in the folder a day ago or longer.
+void removeStaleParts(const std::filesystem::path& directory);
+
 /// What a fit must have been made for.
 struct FitKey {
     std::uint64_t prescriptionHash = 0;
     FitDomain domain;
     FitSettings settings;
+    int algorithm = fitAlgorithmVersion;
 
     bool operator==(const FitKey&) const = default;
 };
 FitKey fitKey(const Prescription& prescription, const FitDomain& domain,
               const FitSettings& settings);
 
-/// A fit, or why there is none: the file is missing, truncated, changed, none of ours, or of
-/// another lens, domain or settings. Every number comes back with the bits it was written with.
+/// A fit, or why there is none: the file is missing, truncated, changed, none of ours, not built as
+/// a fit is (fit_check.h), or of another lens, domain, settings or version. Every number comes back
+/// with the bits it was written with.
 struct FitFileContent {
     std::optional<LensFit> fit;
     std::string refusal;

@@ -20,7 +20,7 @@ double uniform(std::uint64_t seed, std::uint64_t index, std::uint64_t dimension)
     return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
-enum class Fate { passed, blocked, folded };
+enum class Fate { passed, blocked, folded, unsolved, besidePupil };
 
 struct Traced {
     Fate fate = Fate::blocked;
@@ -33,7 +33,10 @@ Traced traceQuery(const TracedLens& lens, const PupilSphere& sphere, const FitQu
     const std::optional<MonochromaticLens> at = lens.at(query.wavelengthNm);
     const std::optional<Eigen::Vector2d> slope =
         at ? at->slopeThrough(query.sensor, query.aperture) : std::nullopt;
-    if (!slope) return result;
+    if (!slope) {
+        result.fate = Fate::unsolved;
+        return result;
+    }
     const TracedRay traced =
         at->traceToScene({query.sensor.mm.x(), query.sensor.mm.y(), slope->x(), slope->y()});
     if (traced.passage.status != TraceStatus::passed) return result;
@@ -45,7 +48,9 @@ Traced traceQuery(const TracedLens& lens, const PupilSphere& sphere, const FitQu
     ray.transmittance = traced.passage.transmittance;
     const std::optional<ExitRay> exit = at->trace(query.sensor, query.aperture);
     const std::optional<PupilState<double>> pupil = sphere.state(traced.ray);
-    if (!exit || !pupil) return result;
+    if (!exit) return result;
+    result.fate = Fate::besidePupil;
+    if (!pupil) return result;
     ray.pupil = *pupil;
     ray.directionBySensor = exit->directionBySensor;
     ray.throughput = exit->throughput;
@@ -114,6 +119,12 @@ FitRays drawFitRays(const TracedLens& lens, const FitDomain& domain, std::size_t
                 case Fate::folded:
                     ++result.counts.folded;
                     folded += one.ray.transmittance;
+                    break;
+                case Fate::unsolved:
+                    ++result.counts.unsolved;
+                    break;
+                case Fate::besidePupil:
+                    ++result.counts.besidePupil;
                     break;
             }
         }

@@ -52,9 +52,11 @@ struct FitRay {
 /// What became of the rays drawn.
 struct RayCounts {
     std::int64_t drawn = 0, passed = 0;
-    std::int64_t blocked = 0;  // by a rim or by total reflection, or the line misses a surface
-    std::int64_t folded = 0;   // the lens' map has turned over there, as in TracedLens::trace
-    double foldedLight = 0.0;  // share of τ of the rays that no rim blocks
+    std::int64_t blocked = 0;      // by a rim or by total reflection, or the line misses a surface
+    std::int64_t folded = 0;       // the lens' map has turned over there, as in TracedLens::trace
+    std::int64_t unsolved = 0;     // no slope is found that leads to the aperture point
+    std::int64_t besidePupil = 0;  // leaves the lens, but passes the pupil sphere by
+    double foldedLight = 0.0;      // share of τ of the rays that no rim blocks
 };
 
 struct FitRays {

@@ -22,8 +22,6 @@ PolynomialInput inputOf(const FitRay& ray, FitForm form) {
     return {ray.query.sensor.mm, second, ray.query.wavelengthNm};
 }
 
-constexpr OutputCount exitOutputs{2, 1}, apertureOutputs{2, 0};
-
 MatrixXd exitTargets(const std::vector<FitRay>& rays, FitForm form) {
     MatrixXd targets(static_cast<Index>(rays.size()), exitOutputs.total());
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -108,6 +106,11 @@ LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
         drawFitRays(lens, domain, trainingCount(candidates, settings), trainingSeed);
     if (training.rays.empty())
         throw std::invalid_argument("lens fit: no ray passes " + prescription.name);
+    const Surface& outermost = prescription.surfaces.front();
+    if (training.counts.besidePupil > 0 && outermost.semiApertureMm > std::abs(outermost.radiusMm))
+        throw std::invalid_argument("lens fit: " + prescription.name +
+                                    ": light leaves its first surface farther out than that "
+                                    "surface's vertex radius, where the fit has no coordinates");
     fit.training = training.counts;
     std::vector<PolynomialInput> inputs;
     for (const FitRay& ray : training.rays) inputs.push_back(inputOf(ray, settings.form));

@@ -46,7 +46,15 @@ struct FitErrors {
     std::int64_t rays = 0, unsolved = 0;
 };
 
+/// To be raised whenever the same prescription, domain and settings come to be fitted otherwise.
+constexpr int fitAlgorithmVersion = 2;
+
+/// Of the polynomials of a LensFit, as far as it has them.
+constexpr OutputCount exitOutputs{2, 1}, apertureOutputs{2, 0};
+constexpr OutputCount startOutputs{2, 0}, slopeOutputs{1, 0};
+
 struct LensFit {
+    int algorithm = fitAlgorithmVersion;
     FitSettings settings;
     FitDomain domain;
     std::uint64_t prescriptionHash = 0;
@@ -64,7 +72,8 @@ struct LensFit {
 using FitProgress = std::function<void(double share, std::string_view stage)>;
 
 /// `settings.raysPerCandidate` rays per candidate monomial, at least 4000 and at most 100,000.
-/// Deterministic. Throws std::invalid_argument where no ray passes.
+/// Deterministic. Throws std::invalid_argument where no ray passes, and where a steep aspheric
+/// front surface sends rays past the pupil sphere.
 LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
                 const FitSettings& settings, const FitProgress& progress = {});
 

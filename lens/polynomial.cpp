@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "lens/fit_check.h"
+
 namespace etendue {
 
 namespace {
@@ -28,6 +30,8 @@ PolynomialEvaluator<T>::PolynomialEvaluator(const SparsePolynomial& polynomial,
       registers_(registers) {
     if (outputs_.total() > mostOutputs || outputs_.vectors > mostVectors)
         throw std::invalid_argument("polynomial: more outputs than can be evaluated together");
+    if (const auto fault = findFault(polynomial))
+        throw std::invalid_argument("polynomial: " + *fault);
     const Eigen::Vector2d coupled = scaling_.secondScale * scaling_.coupling;
     factors_ = {static_cast<T>(scaling_.sensorScale),
                 static_cast<T>(scaling_.secondScale),

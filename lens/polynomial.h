@@ -56,7 +56,8 @@ PolynomialBySensor<Number> bySensorOf(const PolynomialResult<Number>& all) {
 template <class T>
 class PolynomialEvaluator {
 public:
-    /// Throws std::invalid_argument for more than mostOutputs outputs or mostVectors vectors.
+    /// Throws std::invalid_argument for more than mostOutputs outputs or mostVectors vectors, and
+    /// for a polynomial with a fault (fit_check.h).
     /// `registers`: for batches; no wider ones than there are.
     explicit PolynomialEvaluator(const SparsePolynomial& polynomial,
                                  VectorRegisters registers = widestRegisters());

@@ -14,7 +14,7 @@
 //     none       the same; one support for all      all monomials
 //
 // s and p stand for the scaled inputs of InputScaling, about [-1, 1] over the domain. In the axial
-// basis outputs turn with the inputs exactly, and under mirroring too.
+// basis outputs turn with the inputs, to rounding, and mirror with them to the last bit.
 #pragma once
 
 #include <Eigen/Core>
@@ -62,6 +62,7 @@ constexpr int mostPower = 15;
 struct OutputCount {
     int vectors, scalars;
     int total() const { return 2 * vectors + scalars; }
+    bool operator==(const OutputCount&) const = default;
 };
 
 /// Terms that some outputs share. In the axial basis the coefficient rows 2v and 2v + 1 of vector v

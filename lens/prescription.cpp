@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "lens/hash.h"
+
 namespace etendue {
 
 namespace {
@@ -12,15 +14,9 @@ bool isCylinder(const Surface& surface) {
     return surface.kind == SurfaceKind::cylinderX || surface.kind == SurfaceKind::cylinderY;
 }
 
-/// Fowler, Noll and Vo's hash over the little-endian bytes of numbers.
 class ContentHash {
 public:
-    void add(std::uint64_t word) {
-        for (int byte = 0; byte < 8; ++byte) {
-            hash_ ^= (word >> (8 * byte)) & 0xff;
-            hash_ *= 0x100000001b3;
-        }
-    }
+    void add(std::uint64_t word) { hash_.add(word); }
     void add(double number) { add(std::bit_cast<std::uint64_t>(number == 0.0 ? 0.0 : number)); }
     void add(const Glass& glass) {
         add(static_cast<std::uint64_t>(glass.index()));
@@ -35,10 +31,10 @@ public:
              {coating.index, coating.designWavelengthNm, coating.thicknessWaves})
             add(number);
     }
-    std::uint64_t value() const { return hash_; }
+    std::uint64_t value() const { return hash_.value(); }
 
 private:
-    std::uint64_t hash_ = 0xcbf29ce484222325;
+    Fnv1a hash_;
 };
 
 }  // namespace

@@ -3,8 +3,10 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "lens/fit_cache.h"
 #include "tests/lens/fitted_lenses.h"
@@ -142,16 +144,115 @@ TEST_CASE("Fit file: what is no fit is refused, not trusted") {
     }
 }
 
+TEST_CASE(
+    "Fit file: polynomials that are not built as a fit's are refused, whatever the checksum") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path file = directory.path() / "fit.json";
+    const auto refusalOf = [&](const auto& change) {
+        LensFit fit = someFit();
+        change(fit);
+        writeFitFile(file, fit);
+        const FitFileContent content = readFitFile(file);
+        CHECK_FALSE(content.fit.has_value());
+        return content.refusal;
+    };
+    const auto has = [](const std::string& text, const char* part) {
+        return text.find(part) != std::string::npos;
+    };
+    const auto repeatRow = [](TermGroup& group, std::vector<int> outputs) {
+        group.outputs = std::move(outputs);
+        group.coefficients = Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(group.outputs.size()),
+                                                   group.coefficients.cols());
+    };
+    CHECK(has(refusalOf([&](LensFit& fit) {
+                  fit.exit.outputs = {0, 1};
+                  repeatRow(fit.exit.groups.front(), {0});
+              }),
+              "exit: expected 2 vectors and 1 scalars"));
+    // Twenty thousand times output 4, one missing, two exchanged, none at all, one group too many.
+    const std::vector<std::vector<int>> wrong{
+        std::vector<int>(20'000, 4), {0, 1, 2, 3}, {1, 0, 2, 3, 4}, {}, {0, 1, 2, 3, 3}};
+    for (const std::vector<int>& outputs : wrong)
+        CHECK(has(refusalOf([&](LensFit& fit) { repeatRow(fit.exit.groups.front(), outputs); }),
+                  "exit: its outputs"));
+    CHECK(has(refusalOf([](LensFit& fit) { fit.exit.groups.push_back(fit.exit.groups[0]); }),
+              "exit: its outputs"));
+    CHECK(has(refusalOf([](LensFit& fit) { fit.exit.groups.clear(); }), "exit: its outputs"));
+    CHECK(has(refusalOf([](LensFit& fit) { fit.exit.groups[0].terms[0].back() = 1; }),
+              "exit: a term"));
+    CHECK(has(refusalOf([](LensFit& fit) { fit.settings.form = FitForm::sensorState; }),
+              "aperture: expected"));
+    CHECK(has(refusalOf([](LensFit& fit) { fit.start.sensor = fit.exit; }), "start: expected"));
+    CHECK(has(refusalOf([](LensFit& fit) { fit.clip.surfaces.push_back(3); }), "clip: expected"));
+    CHECK(has(refusalOf([](LensFit& fit) { fit.domain.sensorTravelMm = 1.0; }), "slope: expected"));
+    CHECK(has(refusalOf([](LensFit& fit) { fit.domain.imageRadiusMm = 0.0; }), "domain"));
+    refusalOf([](LensFit& fit) { fit.exit.groups[0].coefficients(0, 0) = std::nan(""); });
+    refusalOf([](LensFit& fit) { fit.exit.scaling.waveScale = HUGE_VAL; });
+}
+
+TEST_CASE("Fit file: fits in both forms, with a focus range and of two planes are read back") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path file = directory.path() / "fit.json";
+    for (const PolynomialBasis basis : {PolynomialBasis::axial, PolynomialBasis::twoPlane,
+                                        PolynomialBasis::cartesian, PolynomialBasis::none}) {
+        FitSettings settings = smallSettings();
+        settings.form = FitForm::sensorState;
+        settings.basis = basis;
+        settings.degree = 3;
+        FitDomain domain = doubleGaussDomain();
+        domain.sensorTravelMm = 1.0;
+        writeFitFile(file, fitLens(doubleGauss(), domain, settings));
+        CHECK(readFitFile(file).refusal == "");
+    }
+}
+
+TEST_CASE("Fit file: threads that write the same file at once do not disturb each other") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path file = directory.path() / "fit.json";
+    std::atomic<int> failures = 0;
+    {
+        std::vector<std::jthread> writers;
+        for (int t = 0; t < 6; ++t)
+            writers.emplace_back([&] {
+                for (int i = 0; i < 20; ++i) try {
+                        writeFitFile(file, someFit());
+                    } catch (const std::runtime_error&) {
+                        ++failures;
+                    }
+            });
+    }
+    CHECK(failures == 0);
+    CHECK(readFitFile(file).refusal == "");
+    CHECK(std::distance(std::filesystem::directory_iterator(directory.path()), {}) == 1);
+}
+
+TEST_CASE("Fit cache: what killed writes left is swept away after a day") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path old = directory.path() / "a.json.1.part",
+                                fresh = directory.path() / "b.json.2.part",
+                                fit = directory.path() / "a.json";
+    for (const auto& file : {old, fresh, fit}) write(file, "{");
+    const auto longAgo = std::filesystem::file_time_type::clock::now() - std::chrono::hours(25);
+    for (const auto& file : {old, fit}) std::filesystem::last_write_time(file, longAgo);
+    removeStaleParts(directory.path());
+    CHECK_FALSE(std::filesystem::exists(old));
+    CHECK(std::filesystem::exists(fresh));
+    CHECK(std::filesystem::exists(fit));
+    removeStaleParts(directory.path() / "nowhere");
+}
+
 TEST_CASE("Fit file: a fit of another lens, domain or number of terms is stale") {
     const TemporaryDirectory directory;
     const std::filesystem::path file = directory.path() / "fit.json";
     writeFitFile(file, someFit());
     const FitKey key = fitKey(doubleGauss(), doubleGaussDomain(), smallSettings());
     FitKey lens = key, domain = key, settings = key;
+    FitKey version = key;
+    version.algorithm += 1;
     lens.prescriptionHash ^= 1;
     domain.domain.apertureRadiusMm *= 0.5;
     settings.settings.terms += 1;
-    for (const FitKey& other : {lens, domain, settings}) {
+    for (const FitKey& other : {lens, domain, settings, version}) {
         const FitFileContent content = readFitFile(file, other);
         CHECK_FALSE(content.fit.has_value());
         CHECK(content.refusal.find("stale") != std::string::npos);

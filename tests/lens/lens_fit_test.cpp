@@ -1,10 +1,12 @@
 #include "lens/lens_fit.h"
 
 #include <doctest/doctest.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
 
 #include "lens/fit_domain.h"
+#include "lens/fit_file.h"
 #include "lens/polynomial.h"
 #include "tests/lens/fitted_lenses.h"
 
@@ -17,7 +19,8 @@ TEST_CASE("Fit rays: each is what the exact trace says, and they are the same ev
                   again = drawFitRays(lens, domain, 200, 5);
     REQUIRE(rays.rays.size() == 200);
     CHECK(rays.counts.passed == 200);
-    CHECK(rays.counts.passed + rays.counts.blocked + rays.counts.folded == rays.counts.drawn);
+    const RayCounts& n = rays.counts;
+    CHECK(n.passed + n.blocked + n.folded + n.unsolved + n.besidePupil == n.drawn);
     const PupilSphere sphere(lens.system());
     for (std::size_t i = 0; i < rays.rays.size(); ++i) {
         const FitRay& ray = rays.rays[i];
@@ -76,6 +79,32 @@ TEST_CASE("Lens fit: a small fit is near, a larger one nearer, in both forms") {
         CHECK(small.errors.sensorMicrometres.rms ==
               doctest::Approx(100.0 * small.errors.directionMrad.rms).epsilon(0.1));
     }
+}
+
+TEST_CASE("Lens fit: it has the same bits on one thread and on several") {
+    const LensFit several = fitLens(doubleGauss(), doubleGaussDomain(), smallSettings());
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const LensFit alone = fitLens(doubleGauss(), doubleGaussDomain(), smallSettings());
+    CHECK(fitFileText(alone) == fitFileText(several));
+}
+
+TEST_CASE("Lens fit: a paraboloid whose rim is wider than its vertex radius is refused by that") {
+    // Light comes in up to 13.7 mm from the axis, and the sphere at the vertex ends at 10 mm.
+    Surface front = spherical(10.0, 12.0, 14.0, plainGlass(1.5));
+    front.kind = SurfaceKind::conic;
+    front.conic = -1.0;
+    Prescription lens;
+    lens.name = "paraboloid";
+    lens.surfaces = {front, spherical(std::numeric_limits<double>::infinity(), 1.0, 14.0),
+                     stop(11.0, 8.2)};
+    const FitDomain wide = domainOf(lens, {0.5, 0.5});
+    const FitRays rays = drawFitRays(lensOf(lens, wide), wide, 200, 5);
+    CHECK(rays.counts.besidePupil > 20);
+    CHECK_THROWS_WITH_AS(fitLens(lens, wide, smallSettings()), doctest::Contains("vertex radius"),
+                         std::invalid_argument);
+    FitDomain narrow = wide;
+    narrow.apertureRadiusMm = 2.0;
+    CHECK(fitLens(lens, narrow, smallSettings()).training.besidePupil == 0);
 }
 
 TEST_CASE("Lens fit: every basis can fit every lens, the axial one with fewest terms") {

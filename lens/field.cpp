@@ -33,20 +33,22 @@ double fullAngleDegrees(const MonochromaticLens& lens, const Eigen::Vector2d& ed
 double relativeIllumination(const TracedLens& lens, SensorPoint sensor, double wavelengthNm,
                             int grid) {
     const MonochromaticLens atLine(lens, wavelengthNm);
-    return meanThroughput(lens, atLine, sensor, grid) /
-           meanThroughput(lens, atLine, {{0.0, 0.0}}, grid);
+    const double onAxis = meanThroughput(lens, atLine, {{0.0, 0.0}}, grid);
+    return onAxis > 0.0 ? meanThroughput(lens, atLine, sensor, grid) / onAxis : 0.0;
 }
 
 double imageHeightMm(const TracedLens& lens, const Eigen::Vector2d& along, double share) {
-    constexpr int grid = 12, halvings = 20;
+    constexpr int grid = 12, halvings = 20, mostSteps = 3200;
     const MonochromaticLens atLine(lens, dLineNm);
     const double least = share * meanThroughput(lens, atLine, {{0.0, 0.0}}, grid);
+    if (!(least > 0.0)) return 0.0;
     const auto isBright = [&](double height) {
         return meanThroughput(lens, atLine, {height * along}, grid) >= least;
     };
-    const double step = lens.focalLengthMm() / 32.0;
+    const double step = std::abs(lens.focalLengthMm()) / 32.0;
     double low = 0.0;
-    while (isBright(low + step)) low += step;  // ends: J falls as the height's fourth power
+    // J falls as the height's fourth power.
+    for (int i = 0; i < mostSteps && isBright(low + step); ++i) low += step;
     double high = low + step;
     for (int i = 0; i < halvings; ++i) {
         const double middle = 0.5 * (low + high);

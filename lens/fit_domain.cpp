@@ -18,11 +18,10 @@ void extendToNear(FitDomain& domain, const TracedLens& lens, double nearestFocus
     if (!(travel >= 0.0))
         throw std::invalid_argument("lens fit: the nearest focus is beyond the farthest");
     domain.sensorTravelMm = travel;
-    const auto spread = [&](const ParaxialAxis& axis) {
-        return travel * axis.exitPupilRadiusMm(domain.apertureRadiusMm) /
-               std::abs(axis.exitPupilZMm - lens.sensorZMm());
-    };
-    domain.sensorHalfSizeMm += Eigen::Vector2d(spread(data.x), spread(data.y));
+    // The slopes of a cone: also of one whose exit pupil is infinitely far and large.
+    const Eigen::Vector2d slopes =
+        domain.apertureRadiusMm * lens.paraxialStopMap().bySlope.cwiseAbs().cwiseInverse();
+    domain.sensorHalfSizeMm += travel * slopes;
 }
 
 }  // namespace
@@ -48,6 +47,8 @@ FitDomain fitDomain(const Prescription& prescription, const DomainRequest& reque
     if (request.nearestFocusMm) extendToNear(domain, *lens, *request.nearestFocusMm);
     const double reach = std::max(imageHeightMm(*lens, Eigen::Vector2d::UnitX(), darkest),
                                   imageHeightMm(*lens, Eigen::Vector2d::UnitY(), darkest));
+    demand(reach > 0.0,
+           "lens fit: no light reaches the axis through the aperture, sampled 12 × 12");
     if (reach < domain.sensorHalfSizeMm.norm()) domain.imageRadiusMm = reach;
     return domain;
 }

@@ -16,8 +16,9 @@ struct DomainRequest {
 /// Of a focus range the domain's sensor is that of the farthest focus, made larger by what the
 /// cones of light of a sensor moved back spread over on it.
 /// A sensor that reaches beyond the lens' picture is cut to the disc where there is a picture:
-/// where the illumination is at least 1/1000 of that on the axis. Throws std::invalid_argument for
-/// a request that no lens can meet, or not this one.
+/// where the illumination, by 12 × 12 points of the aperture, is at least 1/1000 of that on the
+/// axis. A beam narrower than the points are apart may fall between them. Throws
+/// std::invalid_argument for a request that no lens can meet, or not this one.
 FitDomain fitDomain(const Prescription& prescription, const DomainRequest& request);
 
 }  // namespace etendue

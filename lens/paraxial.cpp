@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace etendue {
@@ -87,7 +88,7 @@ ParaxialAxis axisData(const Section& section) {
 
 /// The sharp image, behind the last vertex, by Newton's equation x x′ = f².
 double imageDistance(const ParaxialAxis& axis, double lastVertexZMm, double objectDistanceMm) {
-    if (std::isinf(objectDistanceMm)) return axis.backFocalDistanceMm;
+    if (objectDistanceMm == std::numeric_limits<double>::infinity()) return axis.backFocalDistanceMm;
     const double betweenFoci = axis.frontFocalDistanceMm - lastVertexZMm + axis.backFocalDistanceMm;
     const double sum = objectDistanceMm - betweenFoci;  // x + x′
     const double f = axis.focalLengthMm;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lens/fit_domain.h"
 #include "tests/lens/lens_checks.h"
 #include "tests/lens/prescriptions.h"
 
@@ -68,6 +69,25 @@ TEST_CASE("imageHeightMm: the picture ends where the illumination falls below th
         CHECK(relativeIllumination(*lens, {{0.0, height * 0.999}}) >= 0.2);
         CHECK(relativeIllumination(*lens, {{0.0, height * 1.001}}) < 0.2);
         CHECK(imageHeightMm(*lens, {1.0, 0.0}, 0.05) >= height);
+    }
+}
+
+TEST_CASE("imageHeightMm: without light on the axis there is no picture, and no endless search") {
+    // None of the points that the aperture is sampled in lies where the rims let light through.
+    Prescription tessar = loadPrescription(lensFile("tessar-100mm.toml"));
+    tessar.surfaces[stopIndex(tessar)].semiApertureMm = 300.0;
+    const auto lens = makeTracedLens(tessar);
+    CHECK(imageHeightMm(*lens, {1.0, 0.0}, 1e-3) == 0.0);
+    CHECK(relativeIllumination(*lens, {{0.0, 0.0}}, dLineNm, 12) == 0.0);
+    CHECK_THROWS_AS(fitDomain(tessar, {}), std::invalid_argument);
+}
+
+TEST_CASE("relativeIllumination: there is no lens beyond 350–1100 nm") {
+    const auto lens = makeTracedLens(loadPrescription(lensFile("tessar-100mm.toml")));
+    for (const double wavelength : {200.0, 349.9, 1100.1, 5000.0, std::nan("")}) {
+        CHECK_THROWS_AS(relativeIllumination(*lens, {{0.0, 1.0}}, wavelength),
+                        std::invalid_argument);
+        CHECK_THROWS_AS(MonochromaticLens(*lens, wavelength), std::invalid_argument);
     }
 }
 

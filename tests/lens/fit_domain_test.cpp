@@ -34,6 +34,24 @@ TEST_CASE("fitDomain: a sensor larger than the picture is cut to where there is 
     CHECK(std::isinf(fitDomain(fisheye, small).imageRadiusMm));
 }
 
+TEST_CASE("fitDomain: a lens that is telecentric at the sensor has a focus range too") {
+    // The stop at the front focus: the exit pupil is at infinity, exactly.
+    Prescription lens;
+    lens.name = "telecentric";
+    lens.surfaces = {stop(100.0, 5.0), spherical(50.0, 4.0, 12.0, plainGlass(1.5)),
+                     spherical(std::numeric_limits<double>::infinity(), 50.0, 12.0)};
+    DomainRequest request;
+    request.sensorSizeMm = {10.0, 8.0};
+    request.nearestFocusMm = 2000.0;
+    const FitDomain domain = fitDomain(lens, request);
+    REQUIRE(domain.sensorTravelMm > 0.0);
+    // Cones of the slope 5/100, all over the sensor.
+    CHECK(domain.sensorHalfSizeMm.x() - 5.0 ==
+          doctest::Approx(0.05 * domain.sensorTravelMm).epsilon(1e-12));
+    CHECK(domain.sensorHalfSizeMm.y() - 4.0 ==
+          doctest::Approx(0.05 * domain.sensorTravelMm).epsilon(1e-12));
+}
+
 TEST_CASE("fitDomain: what no lens can meet is refused") {
     const Prescription tessar = loadPrescription(lensFile("tessar-100mm.toml"));
     const auto refuses = [&](const DomainRequest& request) {
@@ -43,7 +61,8 @@ TEST_CASE("fitDomain: what no lens can meet is refused") {
     refuses({{0.0, 24.0}});
     refuses({{36.0, -24.0}});
     refuses({{infinity, 24.0}});
-    refuses({{36.0, 24.0}, 100.0});          // nearer than the lens can focus
+    refuses({{36.0, 24.0}, 100.0});  // nearer than the lens can focus
+    refuses({{36.0, 24.0}, -infinity});
     refuses({{36.0, 24.0}, infinity, 1.0});  // wider than it opens
     refuses({{36.0, 24.0}, infinity, {}, 349.0, 700.0});
     refuses({{36.0, 24.0}, infinity, {}, 400.0, 1101.0});

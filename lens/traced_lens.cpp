@@ -70,7 +70,10 @@ AperturePoint TracedLens::sampleAperture(Eigen::Vector2d u) const {
 MonochromaticLens::MonochromaticLens(const TracedLens& lens, double wavelengthNm)
     : lens_(&lens),
       indices_(refractiveIndices(lens.system(), wavelengthNm)),
-      wavelengthNm_(wavelengthNm) {}
+      wavelengthNm_(wavelengthNm) {
+    if (!isInRange(wavelengthNm))
+        throw std::invalid_argument("traced lens: the wavelength must be within 350–1100 nm");
+}
 
 TracedRay MonochromaticLens::traceToScene(const SensorState& sensor) const {
     TracedRay result{{}, rayOf(sensor, lens_->sensorZMm()), {}};
@@ -92,6 +95,10 @@ TracedRay MonochromaticLens::traceToSensor(const LensRay<double>& ray) const {
     result.passage =
         carryToSensor<TraceMode::light>(system(), 0, surfaces.surfaces.size(), result.ray, visit);
     if (result.passage.status != TraceStatus::passed) return result;
+    if (!(result.ray.direction.z < 0.0)) {  // turned away from the sensor
+        result.passage.status = TraceStatus::missedSurface;
+        return result;
+    }
     const PlaneState<double> end = planeState(result.ray, lens_->sensorZMm());
     result.ray.origin = {end.x, end.y, lens_->sensorZMm()};
     return result;

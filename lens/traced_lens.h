@@ -47,7 +47,8 @@ public:
                                  double wavelengthNm) const override;
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                        double wavelengthNm) const override;
-    /// connect(), and how it went. No target is out of the field of a lens without a domain.
+    /// connect(), and how it went. A lens without a domain has no end of its field: outOfField says
+    /// that the wavelength, the aperture point or the target is none for this lens.
     Connection solve(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm,
                      ConnectMethod method = ConnectMethod::newton) const;
     AperturePoint sampleAperture(Eigen::Vector2d u) const override;
@@ -60,6 +61,7 @@ public:
     double sensorZMm() const { return sensorZMm_; }
     /// At the d line.
     const StopMap& paraxialStopMap() const { return stopMap_; }
+    /// The mean of x and y at the d line; negative for a lens that diverges.
     double focalLengthMm() const { return focalLengthMm_; }
 
 private:
@@ -71,6 +73,7 @@ private:
 
 class MonochromaticLens {
 public:
+    /// Throws std::invalid_argument beyond 350–1100 nm.
     MonochromaticLens(const TracedLens& lens, double wavelengthNm);
 
     /// From the sensor into the scene and from anywhere in front of the lens to the sensor, whose

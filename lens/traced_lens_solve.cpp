@@ -142,14 +142,18 @@ Connection MonochromaticLens::solveByNewton(const Eigen::Vector3d& target,
     const auto exit = [&](const Eigen::Vector2d& s, double apertureShare) {
         return exitRay<TraceMode::geometry>({s}, {apertureShare * aperture.mm});
     };
-    TargetSolver solver(exit, lens_->focalLengthMm());
+    TargetSolver solver(exit, std::abs(lens_->focalLengthMm()));
     const auto passing = [&](const std::optional<Aimed>& end) -> Connection {
         if (!end) return {ConnectStatus::unsolved, {}, solver.steps()};
         if (!trace({end->sensor}, aperture)) return {ConnectStatus::blocked, {}, solver.steps()};
         return {ConnectStatus::found, SensorPoint{end->sensor}, solver.steps()};
     };
     const Connection direct = passing(solver.newton(target, {0.0, 0.0}));
-    return direct.sensor ? direct : passing(solver.follow(target));
+    if (direct.sensor) return direct;
+    Connection followed = passing(solver.follow(target));
+    // One root has been found, and is blocked.
+    if (followed.status == ConnectStatus::unsolved) followed.status = direct.status;
+    return followed;
 }
 
 Connection MonochromaticLens::solveByTwoSteps(const Eigen::Vector3d& target,

@@ -57,27 +57,38 @@ TEST_CASE("TracedLens: states that are no rays give nothing") {
 
 TEST_CASE("TracedLens: beyond the image circle rays end at a rim or miss, and are nothing") {
     LensRandom random(61);
+    int endedOnAny = 0;
     for (const ShippedLens& shipped : shippedLenses()) {
         CAPTURE(shipped.file);
         const auto lens = atEight(load(shipped));
         const MonochromaticLens atLine(*lens, greenNm);
         const double f = lens->focalLengthMm();
+        int present = 0, ended = 0, unsolved = 0;
         for (int i = 0; i < 60; ++i) {
-            const SensorPoint s = random.onSensor(4.0 * f, 4.0 * f);
+            const double reach = i % 2 == 0 ? 4.0 * f : shipped.imageHeightMm;
+            const SensorPoint s = random.onSensor(reach, reach);
             const AperturePoint a = lens->sampleAperture(random.inUnitSquare());
             const auto ray = lens->trace(s, a, greenNm);
             const auto q = atLine.slopeThrough(s, a);
             if (!q) {
+                ++unsolved;
                 CHECK_FALSE(ray.has_value());
                 continue;
             }
             const TracedRay traced = atLine.traceToScene({s.mm.x(), s.mm.y(), q->x(), q->y()});
             const bool passes = traced.passage.status == TraceStatus::passed;
-            if (ray) CHECK(passes);  // the converse fails for folded rays
-            if (ray) CHECK(ray->originBySensor.allFinite());
-            if (ray) CHECK(ray->throughput > 0.0);
+            ended += !passes;
+            if (!ray) continue;
+            ++present;
+            CHECK(passes);  // the converse fails for folded rays
+            CHECK(ray->originBySensor.allFinite());
+            CHECK(ray->throughput > 0.0);
         }
+        CHECK(present > 0);
+        CHECK(ended + unsolved > 0);
+        endedOnAny += ended;
     }
+    CHECK(endedOnAny > 0);
 }
 
 TEST_CASE(
@@ -101,6 +112,29 @@ TEST_CASE(
             CHECK(toEigen(ray.ray.direction).norm() == doctest::Approx(1.0).epsilon(1e-13));
         }
     }
+}
+
+TEST_CASE("TracedLens: a ray that a ball turns back toward the scene does not end on the sensor") {
+    // At 89° to the normal of a ball of index 1.5 a ray is turned by 2 (89° − 41.8°) > 90°.
+    Prescription ball;
+    ball.surfaces = {stop(1.0, 10.0), spherical(10.0, 20.0, 9.9999, plainGlass(1.5)),
+                     spherical(-10.0, 5.0, 9.9999)};
+    const TracedLens lens(ball, Aperture(10.0), 5.0);
+    const MonochromaticLens atLine(lens, greenNm);
+    const double height = 10.0 * std::sin(89.0 * std::acos(-1.0) / 180.0);
+    const TracedRay turned = atLine.traceToSensor({{height, 0.0, 5.0}, {0.0, 0.0, -1.0}});
+    CHECK(turned.ray.direction.z > 0.0);
+    CHECK(turned.passage.status == TraceStatus::missedSurface);
+    const TracedRay straight = atLine.traceToSensor({{1.0, 0.0, 5.0}, {0.0, 0.0, -1.0}});
+    CHECK(straight.passage.status == TraceStatus::passed);
+}
+
+TEST_CASE("TracedLens: a lens that diverges connects as any other") {
+    const Prescription lens = singlet(-50.0, 50.0, 3.0, 1.5, 10.0);
+    const TracedLens traced(lens, Aperture(2.0), 60.0);
+    REQUIRE(traced.focalLengthMm() < 0.0);
+    for (const double distance : {30.0, 1e3, 1e6})
+        checkRoundTrip(traced, {{4.0, -3.0}}, {{1.0, 0.5}}, distance, 1e-8);
 }
 
 TEST_CASE("TracedLens: light that grazes the front surface is all but reflected") {

@@ -223,6 +223,7 @@ Json jsonOf(const LensFit& fit) {
             {"start",
              {{"sensor", jsonOf(fit.start.sensor)},
               {"nearness_bend", fit.start.nearnessBend},
+              {"trusted_nearness", fit.start.trustedNearness},
               {"widest_field", fit.start.widestField},
               {"error_mm", fit.start.errorMm}}},
             {"slope", jsonOf(fit.slope)},
@@ -245,7 +246,8 @@ LensFit fitFrom(const Json& json) {
                       clip.at("wrongly_blocked").get<double>()};
     const Json& start = json.at("start");
     fit.start = {polynomialFrom(start.at("sensor")), start.at("nearness_bend").get<double>(),
-                 start.at("widest_field").get<double>(), start.at("error_mm").get<double>()};
+                 start.at("trusted_nearness").get<double>(), start.at("widest_field").get<double>(),
+                 start.at("error_mm").get<double>()};
     fit.slope = polynomialFrom(json.at("slope"));
     fit.training = countsFrom(json.at("training"));
     fit.errors = errorsFrom(json.at("errors"));

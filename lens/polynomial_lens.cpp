@@ -16,8 +16,7 @@ PolynomialLens::PolynomialLens(const Prescription& prescription, const LensFit& 
       clipCount_(fit.clip.count()),
       pupil_(OpticalSystem(prescription)),
       start_(fit.start.sensor),
-      nearnessBend_(fit.start.nearnessBend),
-      widestField_(fit.start.widestField) {
+      connectStart_(fit.start) {
     if (fit.prescriptionHash != contentHash(prescription))
         throw std::invalid_argument("polynomial lens: the fit is of another prescription");
     constexpr double rounding = 1.0 + 1e-12;
@@ -66,17 +65,16 @@ std::optional<Eigen::Vector2d> PolynomialLens::firstGuess(const Eigen::Vector3d&
                                                           AperturePoint aperture,
                                                           double wavelengthNm) const {
     const TargetSight sight = pupil_.sight(target, aperture);
-    if (!(sight.field.norm() <= widestField_ + sight.nearness)) return {};
-    const PolynomialValues<double> at = start_.values({sight.field, aperture.mm, wavelengthNm});
-    const double k = std::min(sight.nearness, 1.0), bent = k + nearnessBend_ * k * k;
-    const Eigen::Vector2d guess(at[0] + bent * at[2], at[1] + bent * at[3]);
-    // Guesses miss by thousandths of the sensor, from the distance of the wander on: one so far
-    // outside means that no point inside sees the target, and searching for one would cost ten
-    // times what finding one does.
-    constexpr double margin = 1.1;
+    const bool isTrusted = sight.nearness <= connectStart_.trustedNearness;
+    if (isTrusted && !(sight.field.norm() <= connectStart_.widestField + sight.nearness)) return {};
+    const Eigen::Vector2d guess =
+        sensorGuess(connectStart_, sight, start_.values({sight.field, aperture.mm, wavelengthNm}));
+    // Searching for a point that sees the target where none does costs ten times what finding one
+    // does.
     const bool isOutside =
-        !(guess.cwiseAbs().array() <= margin * domain_.sensorHalfSizeMm.array()).all();
-    if (isOutside && sight.nearness <= 1.0) return {};
+        !(guess.cwiseAbs().array() <= farthestGuess * domain_.sensorHalfSizeMm.array()).all();
+    if (isOutside && isTrusted) return {};
+    if (!guess.allFinite()) return Eigen::Vector2d(0.0, 0.0);
     return guess.cwiseMax(-domain_.sensorHalfSizeMm).cwiseMin(domain_.sensorHalfSizeMm);
 }
 

@@ -55,8 +55,8 @@ private:
     PolynomialEvaluator<double> clip_;
     std::size_t clipCount_;
     EntrancePupil pupil_;
-    PolynomialEvaluator<double> start_;  // ConnectStart
-    double nearnessBend_, widestField_;
+    PolynomialEvaluator<double> start_;  // connectStart_.sensor
+    ConnectStart connectStart_;
     double focalLengthMm_;
 };
 

@@ -45,11 +45,17 @@ Eigen::Vector2d byNearness(const FitRay& ray, const Eigen::Vector3d& offset, dou
     return squared.inverse() * (bySensor.transpose() * offset) / -wanderMm;
 }
 
-/// In least squares over targets on the rays, of all degrees of nearness.
-double fitBend(const SparsePolynomial& start, std::span<const FitRay> rays,
-               const EntrancePupil& pupil, const PupilSphere& sphere) {
+/// Training ray number i, seen from a target on it.
+struct NearRay {
+    TargetSight sight;
+    PolynomialValues<double> start;  // there
+};
+
+/// Targets of all degrees of nearness, farther ones first.
+std::vector<NearRay> nearRays(const SparsePolynomial& start, std::span<const FitRay> rays,
+                              const EntrancePupil& pupil, const PupilSphere& sphere) {
     const PolynomialEvaluator<double> evaluator(start);
-    double products = 0.0, squares = 0.0;
+    std::vector<NearRay> result;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const FitQuery& query = rays[i].query;
         const Eigen::Vector3d point = pupil.point(query.aperture);
@@ -58,13 +64,40 @@ double fitBend(const SparsePolynomial& start, std::span<const FitRay> rays,
         const Eigen::Vector3d offset = offsetOf(rays[i], point, sphere);
         const double along = std::sqrt(std::max(0.0, distance * distance - offset.squaredNorm()));
         const Eigen::Vector3d target = point + offset + along * rays[i].direction;
-        const PolynomialValues<double> at = evaluator.values(
-            {pupil.sight(target, query.aperture).field, query.aperture.mm, query.wavelengthNm});
+        const TargetSight sight = pupil.sight(target, query.aperture);
+        result.push_back(
+            {sight, evaluator.values({sight.field, query.aperture.mm, query.wavelengthNm})});
+    }
+    return result;
+}
+
+/// In least squares.
+double fitBend(std::span<const NearRay> seen, std::span<const FitRay> rays) {
+    double products = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const auto& at = seen[i].start;
+        const double k = seen[i].sight.nearness;
         const Eigen::Vector2d far(at[0], at[1]), slope(at[2], at[3]);
-        products += k * k * slope.dot(query.sensor.mm - far - k * slope);
+        products += k * k * slope.dot(rays[i].query.sensor.mm - far - k * slope);
         squares += k * k * k * k * slope.squaredNorm();
     }
     return squares > 0.0 ? products / squares : 0.0;
+}
+
+double nearestTrusted(const ConnectStart& start, std::span<const NearRay> seen,
+                      std::span<const FitRay> rays) {
+    constexpr double margin = 0.5 * (1.0 + farthestGuess);  // for rays that are not among these
+    Eigen::Array2d reach(0.0, 0.0);
+    for (const FitRay& ray : rays) reach = reach.max(ray.query.sensor.mm.cwiseAbs().array());
+    double trusted = 0.0;
+    for (const NearRay& one : seen) {
+        const Eigen::Vector2d guess = sensorGuess(start, one.sight, one.start);
+        if (!(guess.cwiseAbs().array() <= margin * reach).all() ||
+            !(one.sight.field.norm() <= start.widestField + one.sight.nearness))
+            break;
+        trusted = one.sight.nearness;
+    }
+    return trusted;
 }
 
 }  // namespace
@@ -73,7 +106,14 @@ EntrancePupil::EntrancePupil(const OpticalSystem& system) {
     const ParaxialData data = paraxialData(system);
     perStop_ << data.x.entrancePupilPerStop, data.y.entrancePupilPerStop;
     zMm_ = 0.5 * (data.x.entrancePupilZMm + data.y.entrancePupilZMm);
-    wanderMm_ = system.surfaces.front().semiApertureMm + std::abs(zMm_);
+    const double frontRadiusMm = system.surfaces.front().semiApertureMm;
+    // Targets may lie before a pupil in front of the lens, in any direction from it; a telecentric
+    // lens has its pupil at infinity.
+    if (!(zMm_ < frontRadiusMm && zMm_ > -100.0 * frontRadiusMm)) {
+        perStop_.setZero();
+        zMm_ = 0.0;
+    }
+    wanderMm_ = frontRadiusMm + std::abs(zMm_);
 }
 
 Eigen::Vector3d EntrancePupil::point(AperturePoint aperture) const {
@@ -106,7 +146,9 @@ ConnectStart fitConnectStart(std::span<const FitRay> training, const OpticalSyst
     }
     // Most targets are not near.
     start.sensor = fitVectors(inputs, targets, Eigen::Vector2d(1.0, 3.0), isAxial);
-    start.nearnessBend = fitBend(start.sensor, training, pupil, sphere);
+    const std::vector<NearRay> seen = nearRays(start.sensor, training, pupil, sphere);
+    start.nearnessBend = fitBend(seen, training);
+    start.trustedNearness = nearestTrusted(start, seen, training);
     const PolynomialEvaluator<double> evaluator(start.sensor);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         const PolynomialValues<double> at = evaluator.values(inputs[i]);

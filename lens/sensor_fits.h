@@ -2,6 +2,7 @@
 // slope at the sensor, by which a lens is refocused.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -22,7 +23,8 @@ struct TargetSight {
     double nearness;        // EntrancePupil's wander over its distance
 };
 
-/// The paraxial one, the mean of both planes.
+/// The paraxial one, the mean of both planes; the first vertex instead where that lies in front of
+/// the lens or very far behind.
 class EntrancePupil {
 public:
     explicit EntrancePupil(const OpticalSystem& system);
@@ -45,9 +47,23 @@ private:
 struct ConnectStart {
     SparsePolynomial sensor;  // (field, a, λ) → S and G, mm
     double nearnessBend = 0.0;
+    /// Up to this k no training ray's guess lies beyond farthestGuess, nor near it: a target whose
+    /// guess does is out of the field. 0 where directions hardly tell sensor points apart, in
+    /// lenses telecentric at their objects.
+    double trustedNearness = 0.0;
     double widestField = 0.0;  // no |field| of a ray in the domain is larger
     double errorMm = 0.0;      // of S, rms over the training rays
 };
+
+/// In half sizes of the sensor.
+constexpr double farthestGuess = 1.1;
+
+/// `at`: start.sensor's values at the target's field, S and G.
+template <class Values>
+Eigen::Vector2d sensorGuess(const ConnectStart& start, const TargetSight& sight, const Values& at) {
+    const double k = std::min(sight.nearness, 1.0), bent = k + start.nearnessBend * k * k;
+    return {at[0] + bent * at[2], at[1] + bent * at[3]};
+}
 
 /// `isAxial`: whether the lens turns about its axis unchanged.
 ConnectStart fitConnectStart(std::span<const FitRay> training, const OpticalSystem& system,

@@ -2,20 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+
+#include "lens/number_text.h"
 
 namespace etendue {
 
 namespace {
 
 using Fault = std::optional<PrescriptionFault>;
-
-std::string number(double value) {
-    std::ostringstream text;
-    text.precision(6);
-    text << value;
-    return text.str();
-}
 
 std::string surfaceName(std::size_t index) { return "surface[" + std::to_string(index) + "]"; }
 
@@ -46,17 +40,17 @@ Fault shapeFault(const Surface& surface, std::size_t index) {
         return fault("thickness_mm", "the thickness must be finite");
     if (!(surface.semiApertureMm > 0.0 && std::isfinite(surface.semiApertureMm)))
         return fault("semi_aperture_mm", "the semi-aperture must be positive");
-    const bool isFinite =
-        std::isfinite(surface.conic) &&
-        std::ranges::all_of(surface.asphere, [](double a) { return std::isfinite(a); });
-    if (!isFinite) return fault("conic", "conic and asphere must be finite");
+    if (!std::isfinite(surface.conic)) return fault("conic", "the conic must be finite");
+    for (std::size_t i = 0; i < surface.asphere.size(); ++i)
+        if (!std::isfinite(surface.asphere[i]))
+            return fault("a" + std::to_string(2 * i + 4), "the coefficient must be finite");
     const double square = surface.semiApertureMm * surface.semiApertureMm;
     const SurfaceShape shape = lensSpaceShape(surface);
     if (!(conicRadicand(shape, square) >= 0.0)) {
         const double reach = std::abs(surface.radiusMm) / std::sqrt(1.0 + surface.conic);
-        return fault("semi_aperture_mm", "the semi-aperture " + number(surface.semiApertureMm) +
+        return fault("semi_aperture_mm", "the semi-aperture " + numberText(surface.semiApertureMm) +
                                              " mm is beyond the surface, which ends at " +
-                                             number(reach) + " mm from the axis");
+                                             numberText(reach) + " mm from the axis");
     }
     return {};
 }
@@ -71,15 +65,17 @@ Fault mediumFault(const Surface& surface, std::size_t index, const Glass& front)
     const double rarer = std::min(refractiveIndex(front, shortestWavelengthNm),
                                   refractiveIndex(surface.behind, shortestWavelengthNm));
     if (!(coating.index >= rarer && std::isfinite(coating.index)))
-        return PrescriptionFault{index, "coating.index",
-                                 "a coating must not be rarer than both media, " + number(rarer)};
+        return PrescriptionFault{
+            index, "coating.index",
+            "a coating must not be rarer than both media, " + numberText(rarer)};
     if (!(coating.designWavelengthNm > 0.0 && coating.thicknessWaves > 0.0))
         return PrescriptionFault{index, "coating", "wavelength and thickness must be positive"};
     return {};
 }
 
 /// Distance from `surface` to the one `apartMm` behind it, least over the smaller clear aperture;
-/// along both axes and the diagonal, which is enough for surfaces of revolution and cylinders.
+/// not a number where one has no height, along both axes and the diagonal, which is enough for
+/// surfaces of revolution and cylinders.
 double leastGap(const Surface& surface, const Surface& behind, double apartMm) {
     const SurfaceShape here = lensSpaceShape(surface), there = lensSpaceShape(behind);
     const double rim = std::min(surface.semiApertureMm, behind.semiApertureMm);
@@ -92,7 +88,9 @@ double leastGap(const Surface& surface, const Surface& behind, double apartMm) {
             const auto sagAt = [&](const SurfaceShape& shape) {
                 return sag(shape, heightSquared(shape, x, y));
             };
-            least = std::min(least, apartMm + sagAt(here) - sagAt(there));
+            const double gap = apartMm + sagAt(here) - sagAt(there);
+            if (std::isnan(gap)) return gap;
+            least = std::min(least, gap);
         }
     }
     return least;
@@ -111,12 +109,17 @@ Fault crossingFault(const Prescription& prescription) {
         if (before) {
             const Surface& front = prescription.surfaces[*before];
             const double gap = leastGap(front, surface, apart);
+            if (std::isnan(gap))
+                return PrescriptionFault{*before, "semi_aperture_mm",
+                                         surfaceName(*before) + " or " + surfaceName(i) +
+                                             " has no height within its semi-aperture"};
             const double rounding = 1e-9 * (std::abs(apart) + surface.semiApertureMm);
             if (!(gap >= -rounding))
                 return PrescriptionFault{*before, "thickness_mm",
                                          surfaceName(*before) + " and " + surfaceName(i) + ", " +
-                                             number(apart) + " mm apart on the axis, cross by " +
-                                             number(-gap) + " mm within their semi-apertures"};
+                                             numberText(apart) +
+                                             " mm apart on the axis, cross by " + numberText(-gap) +
+                                             " mm within their semi-apertures"};
         }
         before = i;
         apart = surface.thicknessMm;

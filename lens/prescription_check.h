@@ -10,7 +10,7 @@ namespace etendue {
 
 struct PrescriptionFault {
     std::optional<std::size_t> surface;  // empty: the lens as a whole
-    std::string key;                     // as in the file
+    std::string key;  // as in the file; "nd" stands for whatever names the medium
     std::string message;
 };
 

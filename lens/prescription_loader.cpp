@@ -128,7 +128,13 @@ StatedData statedOf(const ConfigTable& root, bool isAnamorphic, std::size_t zoom
     const std::string prefix = "coating.";
     if (fault.key.starts_with(prefix))
         surface.table("coating").fail(fault.key.substr(prefix.size()), fault.message);
-    surface.fail(fault.key, fault.message);
+    std::string key = fault.key;
+    if (key == "nd" && !surface.has("nd")) {
+        key.clear();
+        for (const char* medium : {"glass", "sellmeier"})
+            if (surface.has(medium)) key = medium;
+    }
+    surface.fail(key, fault.message);
 }
 
 Prescription prescriptionOf(const ConfigTable& root, const std::vector<ConfigTable>& surfaces,

@@ -3,22 +3,15 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <sstream>
 
 #include "lens/axial_beam.h"
+#include "lens/number_text.h"
 #include "lens/paraxial.h"
 #include "lens/prescription_check.h"
 
 namespace etendue {
 
 namespace {
-
-std::string number(double value) {
-    std::ostringstream text;
-    text.precision(6);
-    text << value;
-    return text.str();
-}
 
 /// Focal lengths and back focal distances in x and y.
 using Lengths = std::array<double, 4>;
@@ -48,8 +41,8 @@ struct Suspect {
     std::string key;
     double written, wanted;
     std::string text() const {
-        return "surface[" + std::to_string(surface) + "]." + key + " were " + number(wanted) +
-               " (it is " + number(written) + ")";
+        return "surface[" + std::to_string(surface) + "]." + key + " were " + numberText(wanted) +
+               " (it is " + numberText(written) + ")";
     }
     double relativeChange() const { return std::abs(wanted - written) / std::abs(written); }
 };
@@ -132,8 +125,8 @@ std::optional<PrescriptionFault> findContradiction(const Prescription& prescript
         const bool isX = *wrong % 2 == 0 && isAnamorphic(prescription);
         return PrescriptionFault{{},
                                  keys[isX ? *wrong : *wrong | 1],
-                                 "the header states " + number(stated[*wrong]) +
-                                     " mm, the table gives " + number(found[*wrong]) + " mm" +
+                                 "the header states " + numberText(stated[*wrong]) +
+                                     " mm, the table gives " + numberText(found[*wrong]) + " mm" +
                                      suspicion(prescription)};
     }
     const AxialBeam beam = widestAxialBeam(OpticalSystem(prescription));
@@ -142,9 +135,9 @@ std::optional<PrescriptionFault> findContradiction(const Prescription& prescript
     if (!(std::abs(fNumber - statedNumber) <= statedFNumberTolerance * statedNumber))
         return PrescriptionFault{{},
                                  "f_number",
-                                 "the header states " + number(statedNumber) +
-                                     ", the table gives " + number(fNumber) + ", where surface[" +
-                                     std::to_string(beam.limitingSurface) +
+                                 "the header states " + numberText(statedNumber) +
+                                     ", the table gives " + numberText(fNumber) +
+                                     ", where surface[" + std::to_string(beam.limitingSurface) +
                                      "].semi_aperture_mm limits the axial beam"};
     return {};
 }

@@ -124,7 +124,8 @@ TEST_CASE("Prescription: degenerate surfaces are refused by file, line and surfa
     CHECK(has(changed("vd = 60", "vd = -60"), first + "vd"));
     CHECK(has(changed("nd = 1.5, vd = 60", "glass = \"N-BK8\""), "did you mean \"N-BK7\"?"));
     CHECK(has(changed("nd = 1.5", "glass = \"N-BK7\", nd = 1.5"), "lens.toml:7: surface[0]"));
-    CHECK(has(changed("nd = 1.5, vd = 60", "sellmeier = [1, 0, 0, 0.25, 0, 0]"), "no glass"));
+    CHECK(has(changed("nd = 1.5, vd = 60", "sellmeier = [1, 0, 0, 0.25, 0, 0]"),
+              first + "sellmeier: no glass"));
     CHECK(has(changed("radius_mm = 100", "radius_mm = 100, conic = 1"), first + "conic"));
     CHECK(has(changed("radius_mm = 100", "radius = 100"), "lens.toml:7: surface[0].radius"));
     CHECK(has(changed("nd = 1.5", "coating = { index = 0.9 }, nd = 1.5"), "coating.index"));
@@ -160,7 +161,25 @@ TEST_CASE("Prescription: a lens has one stop and something that bends light") {
     CHECK(has(errorOf(table(iris)), "nothing but a stop"));
     CHECK(has(errorOf(table("")), "lens.toml:"));
     CHECK(has(errorOf(header), "surface"));
-    CHECK(has(errorOf(table(front + iris)), "must be air"));
+    CHECK(has(errorOf(table(front + iris)), "lens.toml:8: surface[1]: behind the last"));
+    CHECK(has(errorOf(table(iris + with(front, "nd = 1.5, vd = 60", "glass = \"N-BK7\""))),
+              "surface[1].glass: behind the last surface there must be air"));
+}
+
+TEST_CASE("Prescription: numbers that are none are refused by name, heights that are none too") {
+    const auto faultOf = [](const auto& change) {
+        Prescription lens = singlet(50.0, -50.0, 5.0, 1.5, 10.0);
+        change(lens);
+        const auto fault = findFault(lens);
+        return fault ? fault->key : std::string("none");
+    };
+    CHECK(faultOf([](Prescription&) {}) == "none");
+    CHECK(faultOf([](Prescription& p) { p.surfaces[0].conic = std::nan(""); }) == "conic");
+    CHECK(faultOf([](Prescription& p) { p.surfaces[0].asphere[2] = HUGE_VAL; }) == "a8");
+    // Both surfaces overflow: how far they are apart is inf − inf.
+    CHECK(faultOf([](Prescription& p) {
+              p.surfaces[0].asphere[6] = p.surfaces[1].asphere[6] = 1e300;
+          }) == "semi_aperture_mm");
 }
 
 TEST_CASE("Prescription: a header that the table contradicts is refused with both numbers") {

@@ -327,6 +327,53 @@ TEST_CASE("PolynomialLens: a pinhole of a stop, and a lens a thousand times smal
     }
 }
 
+/// Every ray that leaves is found again from targets near and far.
+void checkEveryRoundTrip(const Fitted& fitted, const std::vector<double>& distances) {
+    int rays = 0, lost = 0;
+    for (std::uint64_t i = 0; i < 600; ++i) {
+        const FitQuery q = fitted.query(i);
+        const auto ray = fitted.lens.trace(q.sensor, q.aperture, q.wavelengthNm);
+        if (!ray) continue;
+        ++rays;
+        const double distance = distances[i % distances.size()];
+        const Eigen::Vector3d target = ray->origin + distance * ray->direction;
+        const auto found = fitted.lens.connect(target, q.aperture, q.wavelengthNm);
+        lost += !(found && (found->mm - q.sensor.mm).norm() < 1e-6);
+    }
+    CHECK(rays > 200);
+    CHECK(lost == 0);
+}
+
+/// The sensor 50 mm behind the stop.
+FitDomain behindStop() {
+    FitDomain domain{};
+    domain.sensorHalfSizeMm = {4.0, 3.0};
+    domain.sensorDistanceMm = 50.0;
+    domain.apertureRadiusMm = 2.0;
+    return domain;
+}
+
+TEST_CASE("PolynomialLens: a lens telecentric at its objects connects as any other") {
+    // The stop near the rear focus: the entrance pupil lies a metre before the lens, behind it, or
+    // at infinity. As far away as that all sensor points see the same.
+    Prescription lens = singlet(50.0, -50.0, 4.0, 1.5, 12.0);
+    const double focus = paraxialData(OpticalSystem(lens)).y.backFocalDistanceMm;
+    for (const double beyondFocus : {5.0, 2.0, 0.7, 0.0, -0.7}) {
+        CAPTURE(beyondFocus);
+        lens.surfaces[1].thicknessMm = focus + beyondFocus;
+        const double pupil = paraxialData(OpticalSystem(lens)).y.entrancePupilZMm;
+        CHECK(std::abs(pupil) > 900.0);
+        checkEveryRoundTrip(Fitted(lens, behindStop(), settingsOf(FitForm::twoPoint)),
+                            {10.0, 40.0, 100.0, 200.0});
+    }
+}
+
+TEST_CASE("PolynomialLens: a lens that diverges connects as any other") {
+    checkEveryRoundTrip(
+        Fitted(singlet(-50.0, 50.0, 3.0, 1.5, 12.0), behindStop(), settingsOf(FitForm::twoPoint)),
+        {10.0, 40.0, 100.0, 1e3, 1e9});
+}
+
 TEST_CASE("PolynomialLens: what does not belong together is refused") {
     const LensFit& fit = doubleGaussIn(FitForm::twoPoint).fit;
     const double r = fit.domain.apertureRadiusMm;
@@ -334,6 +381,22 @@ TEST_CASE("PolynomialLens: what does not belong together is refused") {
     CHECK_THROWS_AS(PolynomialLens(doubleGauss(), fit, Aperture(1.001 * r)), std::invalid_argument);
     const Prescription other = loadPrescription(lensFile("tessar-100mm.toml"));
     CHECK_THROWS_AS(PolynomialLens(other, fit, Aperture(0.1 * r)), std::invalid_argument);
+}
+
+TEST_CASE("PolynomialLens: focused as near as may be, connect misses none of its rays" *
+          doctest::test_suite("statistical")) {
+    for (const char* file : {"double-gauss-50mm-f1.1.toml", "double-gauss-100mm.toml",
+                             "tessar-100mm.toml", "fisheye-10mm.toml"})
+        for (const FitForm form : bothForms) {
+            CAPTURE(file);
+            const Prescription table = loadPrescription(lensFile(file));
+            const ParaxialData data = paraxialData(OpticalSystem(table));
+            const double nearest = data.y.frontFocalDistanceMm - data.lastVertexZMm +
+                                   data.y.backFocalDistanceMm + 2.0 * data.y.focalLengthMm;
+            const FitDomain domain = fitDomain(table, {{24.0, 16.0}, 1.0001 * nearest});
+            checkEveryRoundTrip(Fitted(table, domain, settingsOf(form)),
+                                {5.0, 30.0, 0.3 * nearest, nearest, 1e3, 1e9});
+        }
 }
 
 TEST_CASE("PolynomialLens: connect misses none of the rays of any lens" *

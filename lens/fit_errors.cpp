@@ -101,8 +101,7 @@ std::optional<RayErrors> errorsOf(const FittedExits& fitted, const PupilSphere& 
     const PupilState<double>& pupil = exit->pupil;
     const Eigen::Vector3d off = toEigen(there->direction) - ray.direction;
     const double j = exit->j ? *exit->j : exit->throughput / ray.transmittance;
-    const double determinant =
-        std::abs(exit->bySensorAndAperture.determinant()) / (sphere.normalZ(pupil.x, pupil.y) * j);
+    const double determinant = etendueDeterminant(exit->bySensorAndAperture, j, pupil, sphere);
     return RayErrors{std::hypot(pupil.x - ray.pupil.x, pupil.y - ray.pupil.y), 1e3 * off.norm(),
                      1e3 * ray.directionBySensor.colPivHouseholderQr().solve(off).norm(),
                      std::abs(exit->throughput - ray.throughput) / brightness,

@@ -45,7 +45,7 @@ inline bool passesRims(std::span<const double> squares) {
     return true;
 }
 
-/// On `rays` queries drawn anew, folded rays left out.
+/// On `rays` queries drawn anew.
 ClipErrors measureClip(const ClipFit& clip, const TracedLens& lens, const FitDomain& domain,
                        std::size_t rays, std::uint64_t seed);
 

@@ -75,12 +75,18 @@ template std::optional<PupilState<Dual<4>>> PupilSphere::state(const LensRay<Dua
 double etendueDeterminant(const Eigen::Matrix4d& pupilBySensor, const SensorState& sensor,
                           const PupilState<double>& pupil, const PupilSphere& sphere) {
     // At the sensor the projected direction is the direction's x and y, whose determinant by the
-    // slope is cos⁴θ. At the sphere the tangential components are; its area is 1/normalZ of its
-    // projection's.
+    // slope is cos⁴θ.
     const double squared = sensor.slopeX * sensor.slopeX + sensor.slopeY * sensor.slopeY;
     const double cosSquared = 1.0 / (1.0 + squared);
-    return std::abs(pupilBySensor.determinant()) /
-           (sphere.normalZ(pupil.x, pupil.y) * cosSquared * cosSquared);
+    return etendueDeterminant(pupilBySensor, cosSquared * cosSquared, pupil, sphere);
+}
+
+double etendueDeterminant(const Eigen::Matrix4d& pupilBySensorAndAperture, double exchange,
+                          const PupilState<double>& pupil, const PupilSphere& sphere) {
+    // At the sphere the tangential components are the projected direction; its area is 1/normalZ of
+    // its projection's.
+    return std::abs(pupilBySensorAndAperture.determinant()) /
+           (sphere.normalZ(pupil.x, pupil.y) * exchange);
 }
 
 }  // namespace etendue

@@ -85,5 +85,8 @@ private:
 /// has 1.
 double etendueDeterminant(const Eigen::Matrix4d& pupilBySensor, const SensorState& sensor,
                           const PupilState<double>& pupil, const PupilSphere& sphere);
+/// The same from the Jacobian by (s, a); `exchange` is J of equation (1).
+double etendueDeterminant(const Eigen::Matrix4d& pupilBySensorAndAperture, double exchange,
+                          const PupilState<double>& pupil, const PupilSphere& sphere);
 
 }  // namespace etendue

@@ -6,6 +6,40 @@
 
 namespace etendue {
 
+namespace {
+
+/// The first four slots' sums and their derivatives, `jet`, to the vectors that they stand for.
+template <int Inputs, int Levels, class T, std::size_t Columns, class Jet>
+[[gnu::always_inline]] inline void storeVectors(
+    const Jet& jet, const Pack<T, 4> (&in)[5], const InputFactors<T>& factors, const SlotUse& use,
+    PolynomialValues<T>& values, std::array<std::array<T, Columns>, 2 * mostVectors>& slopes) {
+    using Slots = Pack<T, 4>;
+    constexpr int by = derivedLevels(Levels, Inputs);
+    const auto entry = [&](int row, int column) -> T& {
+        if constexpr (Inputs > 0)
+            if (column > 0)
+                return slopes[static_cast<std::size_t>(row)][static_cast<std::size_t>(column - 1)];
+        return values[static_cast<std::size_t>(row)];
+    };
+    if constexpr (Levels == 4) {
+        Slots c[1 + by];
+        for (int part = 0; part <= by; ++part) c[part] = jet[part].exchanged();
+        composeVector<Inputs>(jet, c, in, factors, [&](int i, int column, const Slots& component) {
+            // A second vector where there is one; else scalars overwrite it.
+            for (int v = 0; v < mostVectors; ++v) entry(2 * v + i, column) = component[v];
+        });
+    } else {
+        composeComponent<Inputs>(jet, factors, [&](int column, const Slots& component) {
+            for (int slot = 0; slot < 4; ++slot) {
+                const int row = use.components[slot];
+                if (row >= 0) entry(row, column) = component[slot];
+            }
+        });
+    }
+}
+
+}  // namespace
+
 template <class T>
 PolynomialValues<T> PolynomialEvaluator<T>::values(const PolynomialInput& input) const {
     PolynomialValues<T> result;
@@ -63,32 +97,8 @@ void PolynomialEvaluator<T>::evaluateGroup(const Group& group, const std::array<
             if (first + lane < use.scalars)
                 values[static_cast<std::size_t>(use.firstScalar + first + lane)] = sums[lane];
     };
-    const auto storeVectors = [&](const auto& jet) {
-        const auto entry = [&](int row, int column) -> T& {
-            if constexpr (Inputs > 0)
-                if (column > 0)
-                    return slopes[static_cast<std::size_t>(row)]
-                                 [static_cast<std::size_t>(column - 1)];
-            return values[static_cast<std::size_t>(row)];
-        };
-        if constexpr (Levels == 4) {
-            Slots c[1 + by];
-            for (int part = 0; part <= by; ++part) c[part] = jet[part].exchanged();
-            composeVector<Inputs>(jet, c, in, factors_,
-                                  [&](int i, int column, const Slots& component) {
-                                      // A second vector where there is one; else scalars overwrite
-                                      // it.
-                                      for (int v = 0; v < mostVectors; ++v)
-                                          entry(2 * v + i, column) = component[v];
-                                  });
-        } else {
-            composeComponent<Inputs>(jet, factors_, [&](int column, const Slots& component) {
-                for (int slot = 0; slot < 4; ++slot) {
-                    const int row = use.components[slot];
-                    if (row >= 0) entry(row, column) = component[slot];
-                }
-            });
-        }
+    const auto store = [&](const auto& jet) {
+        storeVectors<Inputs, Levels>(jet, in, factors_, use, values, slopes);
     };
     const auto sweep = [&]<int Jets, int Values>(std::integral_constant<int, Jets>,
                                                  std::integral_constant<int, Values>, int slot) {
@@ -103,12 +113,12 @@ void PolynomialEvaluator<T>::evaluateGroup(const Group& group, const std::array<
     int slot = 0, scalar = 0;
     if (use.vectorSlots > 0 && use.scalars > 0) {
         const auto sums = sweep(one, one, slot);
-        storeVectors(sums.jets[0]);
+        store(sums.jets[0]);
         storeScalars(scalar, sums.values[0]);
         slot += 8;
         scalar += 4;
     } else if (use.vectorSlots > 0) {
-        storeVectors(sweep(one, none, slot).jets[0]);
+        store(sweep(one, none, slot).jets[0]);
     }
     for (; scalar + 4 < use.scalars; slot += 8, scalar += 8) {
         const auto sums = sweep(none, two, slot);

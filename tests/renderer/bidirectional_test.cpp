@@ -100,15 +100,17 @@ TEST_CASE("Estimators: pt, lt and bdpt agree on matte surfaces under an area lig
         checkAgreement(sceneWith(camera, room(matte) + areaLamp), {"lt", "bdpt"}, 64, 0.05);
 }
 
-TEST_CASE("Estimators: …on glossy ones") {
+TEST_CASE("Estimators: …on glossy ones" * doctest::test_suite("statistical")) {
     checkAgreement(sceneWith(thinLens, room(glossy) + areaLamp), {"lt", "bdpt"}, 128, 0.05);
 }
 
-TEST_CASE("Estimators: …by mirrors and glass, where the light has extent") {
+TEST_CASE("Estimators: …by mirrors and glass, where the light has extent" *
+          doctest::test_suite("statistical")) {
     checkAgreement(sceneWith(thinLens, room(mirrors) + areaLamp), {"bdpt"}, 128, 0.08);
 }
 
-TEST_CASE("Estimators: …under each kind of light without extent, and from far away") {
+TEST_CASE("Estimators: …under each kind of light without extent, and from far away" *
+          doctest::test_suite("statistical")) {
     const char* lights[] = {
         "type = \"point\"\nposition = [-0.5, 2, 1]\nintensity = [3, 4, 5]\n",
         "type = \"spot\"\nposition = [-0.5, 2, 1]\ndirection = [0.3, -1, -0.4]\nintensity = [9, 8, "
@@ -152,7 +154,7 @@ TEST_CASE("Estimators: …through lenses of glass that part the colours" *
     }
 }
 
-TEST_CASE("Estimators: …and through a prism") {
+TEST_CASE("Estimators: …and through a prism" * doctest::test_suite("statistical")) {
     const std::string prism = R"(
 [[material]]
 name = "flint"

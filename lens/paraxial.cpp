@@ -88,7 +88,8 @@ ParaxialAxis axisData(const Section& section) {
 
 /// The sharp image, behind the last vertex, by Newton's equation x x′ = f².
 double imageDistance(const ParaxialAxis& axis, double lastVertexZMm, double objectDistanceMm) {
-    if (objectDistanceMm == std::numeric_limits<double>::infinity()) return axis.backFocalDistanceMm;
+    if (objectDistanceMm == std::numeric_limits<double>::infinity())
+        return axis.backFocalDistanceMm;
     const double betweenFoci = axis.frontFocalDistanceMm - lastVertexZMm + axis.backFocalDistanceMm;
     const double sum = objectDistanceMm - betweenFoci;  // x + x′
     const double f = axis.focalLengthMm;

@@ -57,6 +57,9 @@ void printReport(const Prescription& prescription, const ObtainedFit& obtained) 
         "light\n\n",
         drawn.passed, drawn.drawn, perCent * share(drawn.blocked, drawn.drawn),
         perCent * share(drawn.folded, drawn.drawn), perCent * drawn.foldedLight);
+    if (drawn.unsolved + drawn.besidePupil > 0)
+        fmt::print("  left out  {} without a solution, {} beside the pupil sphere\n\n",
+                   drawn.unsolved, drawn.besidePupil);
     fmt::print("  error on {} rays drawn anew  {:>12}{:>12}{:>12}\n", fit.errors.rays, "rms",
                "99.9 %", "most");
     for (const FitErrorRow& row : errorRows(fit.errors))
@@ -141,6 +144,8 @@ Json jsonOf(const LensFit& fit) {
                                     {"passed", fit.training.passed},
                                     {"blocked", fit.training.blocked},
                                     {"folded", fit.training.folded},
+                                    {"unsolved", fit.training.unsolved},
+                                    {"beside_pupil", fit.training.besidePupil},
                                     {"folded_light", fit.training.foldedLight}})},
          {"errors", std::move(errors)},
          {"rims", Json::object({{"surfaces", std::move(surfaces)},

@@ -105,13 +105,13 @@ bool isParted(const View& view);
 /// What `ray` meets first.
 std::optional<FirstHit> firstHitOf(const Scene& scene, const CameraRay& ray);
 
-/// The number of random stream that belongs to a pixel.
+/// The index of the random numbers that belong to a pixel.
 std::uint32_t pixelIndex(const View& view, SampleId id);
 
 /// The kinds that makeEstimator knows.
 const std::vector<std::string>& estimatorKinds();
 
-/// `camera`: whose pixels are to be counted. Throws std::invalid_argument for an unknown kind.
+/// Throws std::invalid_argument for an unknown kind.
 std::unique_ptr<Estimator> makeEstimator(const EstimatorSettings& settings);
 
 /// Path tracing with next-event estimation, the two combined by the balance heuristic (Veach 1997,

@@ -52,7 +52,8 @@ public:
         const float ior = isParting ? dispersion_->at(context.wavelengths.heroNm()) : ior_;
         const float eta = wo.z > 0.0f ? ior : 1.0f / ior;
         const float cosine = std::min(std::abs(wo.z), 1.0f);
-        const auto [reflected, cosTransmitted] = fresnelDielectric(cosine, eta);
+        const auto fresnel = fresnelDielectric(cosine, eta);
+        const float reflected = fresnel.reflectance;
         if (uLobe < reflected) {
             Spectrum weight(1.0f);
             // Reflected, all wavelengths go one way, each with its own share.
@@ -65,7 +66,7 @@ public:
                 });
             return diracSample({-wo.x, -wo.y, wo.z}, weight, reflected, reflected);
         }
-        const Vec3 wi = {-wo.x / eta, -wo.y / eta, -std::copysign(cosTransmitted, wo.z)};
+        const Vec3 wi = {-wo.x / eta, -wo.y / eta, -std::copysign(fresnel.cosTransmitted, wo.z)};
         const Spectrum weight =
             context.wavelengths.lanesOf(tint_) * transportFactor(context.transport, eta);
         BsdfSample sample = diracSample(wi, weight, 1.0f - reflected, 1.0f - reflected);

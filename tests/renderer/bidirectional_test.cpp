@@ -111,14 +111,16 @@ TEST_CASE("Estimators: …by mirrors and glass, where the light has extent" *
 
 TEST_CASE("Estimators: …under each kind of light without extent, and from far away" *
           doctest::test_suite("statistical")) {
-    const char* lights[] = {
+    const std::string spot =
+        "type = \"spot\"\nposition = [-0.5, 2, 1]\ndirection = [0.3, -1, -0.4]\n"
+        "intensity = [9, 8, 7]\nouter_angle = 50\n";
+    const std::string lights[] = {
         "type = \"point\"\nposition = [-0.5, 2, 1]\nintensity = [3, 4, 5]\n",
-        "type = \"spot\"\nposition = [-0.5, 2, 1]\ndirection = [0.3, -1, -0.4]\nintensity = [9, 8, "
-        "7]\nouter_angle = 50\n",
+        spot,
         "type = \"directional\"\ndirection = [0.3, -1, -0.6]\nirradiance = [2, 2, 3]\n",
         "type = \"constant\"\nradiance = [1, 1.5, 2]\n",
     };
-    for (const std::string light : lights) {
+    for (const std::string& light : lights) {
         CAPTURE(light);
         checkAgreement(sceneWith(thinLens, room(matte) + "[[light]]\n" + light), {"lt", "bdpt"},
                        128, 0.08);

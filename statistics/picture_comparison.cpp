@@ -9,22 +9,24 @@ namespace etendue {
 
 namespace {
 
-/// Brightness of each tile of one picture.
+/// Of each tile of one picture, and each of R, G, B.
 std::vector<double> tileMeans(const Picture& pixels, int width, int tileSize) {
     const int tilesAcross = (width + tileSize - 1) / tileSize;
-    std::map<int, std::pair<double, int>> sums;
+    std::map<std::pair<int, std::size_t>, std::pair<double, int>> sums;
     for (std::size_t i = 0; i < pixels.size() / 3; ++i) {
         const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
-        auto& [sum, count] = sums[y / tileSize * tilesAcross + x / tileSize];
-        for (std::size_t c = 0; c < 3; ++c) sum += static_cast<double>(pixels[3 * i + c]);
-        count += 3;
+        for (std::size_t c = 0; c < 3; ++c) {
+            auto& [sum, count] = sums[{y / tileSize * tilesAcross + x / tileSize, c}];
+            sum += static_cast<double>(pixels[3 * i + c]);
+            ++count;
+        }
     }
     std::vector<double> means;
     for (const auto& [tile, entry] : sums) means.push_back(entry.first / entry.second);
     return means;
 }
 
-/// For each tile its means in all the pictures.
+/// The same, each with its means in all the pictures.
 std::vector<std::vector<double>> byTile(const std::vector<Picture>& pictures, int width,
                                         int tileSize) {
     std::vector<std::vector<double>> result;

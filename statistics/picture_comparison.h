@@ -10,9 +10,9 @@ namespace etendue {
 /// Linear RGB, three floats a pixel, row by row.
 using Picture = std::vector<float>;
 
-/// Welch's t-test per tile of the means over seeds, and of the whole picture (Jung, Hanika and
-/// Dachsbacher 2020), corrected for the number of tests; and the bias of the whole picture with its
-/// confidence interval.
+/// Welch's t-test of the means over seeds (Jung, Hanika and Dachsbacher 2020), per tile and colour
+/// and of the whole picture, corrected for the number of tests; and the bias of the whole picture
+/// with its confidence interval.
 struct PictureComparison {
     double smallestP = 1.0;     // over the tiles and the whole; to be compared with `level`
     double level = 0.0;         // per test, Šidák-corrected from 0.01 overall

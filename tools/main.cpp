@@ -7,11 +7,13 @@
 #include <exception>
 #include <functional>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "tools/lens_command.h"
 #include "tools/option_checks.h"
 #include "tools/render_command.h"
+#include "tools/replay_command.h"
 #include "tools/version.h"
 
 namespace etendue {
@@ -24,6 +26,7 @@ Examples:
   etendue render scene.toml -o a.exr -s camera.f_number=5.6 -s material.glass.ior=1.7
   etendue render scene.toml -o a.exr --time 60 --layers albedo,normal,depth
   etendue check scene.toml
+  etendue replay scene.toml --pixel 360,240 --sample 0 -s estimator.kind=bdpt
   etendue lens info double-gauss-100mm
 
 Exit codes:
@@ -51,6 +54,27 @@ void addOverrides(CLI::App* command, std::vector<std::string>& overrides) {
         ->type_name("KEY=VALUE");
 }
 
+void addSeed(CLI::App* command, std::uint64_t& seed) {
+    command->add_option("--seed", seed, "Of the random numbers; default 0")
+        ->check(numberThat<std::uint64_t>([](std::uint64_t) { return true; },
+                                          "a whole number from 0 to 2^64 - 1"))
+        ->type_name("N");
+}
+
+void addThreads(CLI::App* command, std::optional<int>& threads) {
+    command->add_option("--threads", threads, "Default: one for each processor")
+        ->check(CLI::Range(1, 1024).description(""))
+        ->type_name("N");
+}
+
+void addSize(CLI::App* command, std::vector<int>& size, const char* description) {
+    command->add_option("--size", size, description)
+        ->delimiter(',')
+        ->expected(2)
+        ->check(CLI::Range(1, 32768).description(""))
+        ->type_name("W,H");
+}
+
 void addRender(CLI::App& app, RenderCommand& c) {
     CLI::App* render =
         app.add_subcommand("render", "Render a scene (.toml) or a model (.obj) to EXR");
@@ -70,18 +94,9 @@ void addRender(CLI::App& app, RenderCommand& c) {
                      "Stop after about so long; without --samples, whatever the scene says")
         ->check(positiveNumber())
         ->type_name("SECONDS");
-    render->add_option("--seed", c.seed, "Of the random numbers; default 0")
-        ->check(numberThat<std::uint64_t>([](std::uint64_t) { return true; },
-                                          "a whole number from 0 to 2^64 - 1"))
-        ->type_name("N");
-    render->add_option("--threads", c.threads, "Default: one for each processor")
-        ->check(CLI::Range(1, 1024).description(""))
-        ->type_name("N");
-    render->add_option("--size", c.size, "Pixels of the full frame: WIDTH,HEIGHT")
-        ->delimiter(',')
-        ->expected(2)
-        ->check(CLI::Range(1, 32768).description(""))
-        ->type_name("W,H");
+    addSeed(render, c.seed);
+    addThreads(render, c.threads);
+    addSize(render, c.size, "Pixels of the full frame: WIDTH,HEIGHT");
     render->add_option("--crop", c.crop, "Only this window of the full frame")
         ->delimiter(',')
         ->expected(4)
@@ -134,6 +149,27 @@ void addCheck(CLI::App& app, CheckCommand& c) {
         ->allow_extra_args(false);
 }
 
+void addReplay(CLI::App& app, ReplayCommand& c) {
+    CLI::App* replay = app.add_subcommand(
+        "replay", "Trace one sample of a picture again and print it, vertex by vertex");
+    replay->add_option("scene", c.scene, "Scene file or bare model")->required()->type_name("FILE");
+    replay->add_option("--pixel", c.pixel, "Of the full frame, from its top left")
+        ->delimiter(',')
+        ->expected(2)
+        ->required()
+        ->check(CLI::Range(0, 32767).description(""))
+        ->type_name("X,Y");
+    replay->add_option("--sample", c.sample, "Of the pixel; the first is 0")
+        ->required()
+        ->check(CLI::Range(0, 1 << 30).description(""))
+        ->type_name("N");
+    addSeed(replay, c.seed);
+    addSize(replay, c.size, "Pixels of the full frame, as they were when it was rendered");
+    addCamera(replay, c.camera);
+    addOverrides(replay, c.overrides);
+    replay->add_flag("--json", c.asJson, "Print JSON");
+}
+
 ExitCode run(int argc, char** argv) {
     CLI::App app(
         "Étendue renders scenes through real photographic lenses, by unbiased light transport.",
@@ -147,6 +183,8 @@ ExitCode run(int argc, char** argv) {
     CheckCommand check;
     addRender(app, render);
     addCheck(app, check);
+    ReplayCommand replay;
+    addReplay(app, replay);
     std::function<ExitCode()> chosenLensCommand;
     addLensCommands(app, chosenLensCommand);
     try {
@@ -156,6 +194,7 @@ ExitCode run(int argc, char** argv) {
         return code == 0 ? ExitCode::success : ExitCode::usage;
     }
     if (chosenLensCommand) return chosenLensCommand();
+    if (app.got_subcommand("replay")) return runReplay(replay);
     return app.got_subcommand("render") ? runRender(render) : runCheck(check);
 }
 

@@ -101,6 +101,8 @@ void reportDefects(const RenderCommand& command, const RenderResult& result) {
         for (const BadSample& b : result.badSamples)
             say(fmt::format("  seed {} pixel {},{} sample {} ({})\n", command.seed, b.x, b.y,
                             b.sample, b.technique == Technique{} ? "sum" : nameOf(b.technique)));
+        say("  etendue replay shows how one came about, by the same scene, -s, --size and "
+            "--camera\n");
     }
     if (result.refusedRays > 0)
         say(fmt::format("etendue: {} rays had no finite place in the scene and met nothing\n",

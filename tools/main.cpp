@@ -10,6 +10,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "renderer/estimator.h"
+#include "tools/bench_command.h"
 #include "tools/lens_command.h"
 #include "tools/option_checks.h"
 #include "tools/render_command.h"
@@ -27,6 +29,7 @@ Examples:
   etendue render scene.toml -o a.exr --time 60 --layers albedo,normal,depth
   etendue check scene.toml
   etendue replay scene.toml --pixel 360,240 --sample 0 -s estimator.kind=bdpt
+  etendue bench agreement cornell-box --cameras pinhole,double-gauss
   etendue lens info double-gauss-100mm
 
 Exit codes:
@@ -170,6 +173,54 @@ void addReplay(CLI::App& app, ReplayCommand& c) {
     replay->add_flag("--json", c.asJson, "Print JSON");
 }
 
+void addAgreement(CLI::App& bench, AgreementCommand& c) {
+    const CLI::Validator kinds = CLI::IsMember(estimatorKinds()).description("");
+    CLI::App* agreement = bench.add_subcommand(
+        "agreement",
+        "Test whether the estimators make one picture, scene by scene, camera by "
+        "camera (docs/agreement.md)");
+    agreement
+        ->add_option("scene", c.scenes, "Scene files, or names in --scenes; default: all there")
+        ->type_name("SCENE");
+    agreement->add_option("--scenes", c.folder, "Folder of scenes and of cameras/; default: scenes")
+        ->type_name("DIR");
+    agreement
+        ->add_option("--cameras", c.cameras,
+                     "Names in cameras/, files, own: the scene's; default: pinhole,thin-lens,"
+                     "double-gauss,double-gauss-traced,fisheye,anamorphic")
+        ->delimiter(',')
+        ->allow_extra_args(false)  // scenes may follow
+        ->type_name("LIST");
+    agreement->add_option("--estimators", c.estimators, "To test; default: lt,bdpt")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(kinds)
+        ->type_name("LIST");
+    agreement->add_option("--against", c.reference, "By which estimator; default: pt")
+        ->check(kinds)
+        ->type_name("NAME");
+    agreement->add_option("--seeds", c.seeds, "Pictures of either estimator; default: 16")
+        ->check(CLI::Range(2, 10000).description(""))
+        ->type_name("N");
+    agreement
+        ->add_option("--samples", c.samples,
+                     "Per pixel of each picture; default: as many as the bound asks for")
+        ->check(CLI::Range(1, 1 << 24).description(""))
+        ->type_name("N");
+    agreement->add_option("--time", c.seconds, "At most about so long a comparison; default: 20")
+        ->check(positiveNumber())
+        ->type_name("SECONDS");
+    agreement
+        ->add_option("--bound", c.boundPercent, "Of the bias that counts as none; default: 0.2")
+        ->check(positiveNumber())
+        ->type_name("PERCENT");
+    addSize(agreement, c.size, "Pixels of the pictures; default: 48,32");
+    addSeed(agreement, c.firstSeed);
+    addThreads(agreement, c.threads);
+    addOverrides(agreement, c.overrides);
+    agreement->add_flag("--json", c.asJson, "Print JSON");
+}
+
 ExitCode run(int argc, char** argv) {
     CLI::App app(
         "Étendue renders scenes through real photographic lenses, by unbiased light transport.",
@@ -185,6 +236,10 @@ ExitCode run(int argc, char** argv) {
     addCheck(app, check);
     ReplayCommand replay;
     addReplay(app, replay);
+    CLI::App* bench = app.add_subcommand("bench", "Measure the renderer against itself");
+    bench->require_subcommand(1);
+    AgreementCommand agreement;
+    addAgreement(*bench, agreement);
     std::function<ExitCode()> chosenLensCommand;
     addLensCommands(app, chosenLensCommand);
     try {
@@ -194,6 +249,7 @@ ExitCode run(int argc, char** argv) {
         return code == 0 ? ExitCode::success : ExitCode::usage;
     }
     if (chosenLensCommand) return chosenLensCommand();
+    if (app.got_subcommand(bench)) return runAgreement(agreement);
     if (app.got_subcommand("replay")) return runReplay(replay);
     return app.got_subcommand("render") ? runRender(render) : runCheck(check);
 }

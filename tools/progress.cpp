@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -26,6 +27,10 @@ std::string formatSamples(const RenderProgress& p) {
 std::string formatRate(double perSecond) {
     return perSecond >= 1e6 ? fmt::format("{:.2f} M samples/s", perSecond * 1e-6)
                             : fmt::format("{:.0f} k samples/s", perSecond * 1e-3);
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 std::string describe(const RenderProgress& p, bool isLast) {
@@ -57,6 +62,37 @@ void FitBar::update(double share, std::string_view stage) {
 
 void FitBar::clear() const {
     if (isTerminal_ && !stage_.empty()) say("\r\033[K");
+}
+
+JobBar::JobBar(std::size_t jobs, double secondsEach)
+    : isTerminal_(isatty(STDERR_FILENO) != 0), jobs_(jobs), secondsEach_(secondsEach) {}
+
+void JobBar::update(const std::string& name, double share) {
+    constexpr double interval = 0.1;
+    const double seconds = secondsSince(start_);
+    if (!isTerminal_ || seconds - lastSeconds_ < interval) return;
+    lastSeconds_ = seconds;
+    const double done = static_cast<double>(done_) + share;
+    const int filled = static_cast<int>(done / static_cast<double>(jobs_) * barWidth);
+    say(fmt::format("\r[{:#<{}}{:.<{}}] {}/{}  {}  ETA {}\033[K", "", filled, "", barWidth - filled,
+                    done_ + 1, jobs_, name, formatDuration(secondsLeft(share))));
+}
+
+void JobBar::finishJob(const std::string& outcome) {
+    ++done_;
+    if (!isTerminal_)
+        say(fmt::format("  {}/{}  {}  ETA {}\n", done_, jobs_, outcome,
+                        formatDuration(secondsLeft(0.0))));
+}
+
+void JobBar::clear() const {
+    if (isTerminal_) say("\r\033[K");
+}
+
+double JobBar::secondsLeft(double share) const {
+    const double done = static_cast<double>(done_) + share;
+    const double each = done_ > 0 ? secondsSince(start_) / done : secondsEach_;
+    return std::max(0.0, (static_cast<double>(jobs_) - done) * each);
 }
 
 void say(const std::string& text) {

@@ -1,6 +1,7 @@
 // Progress of a long command: a bar on a terminal, plain lines elsewhere, JSON lines for machines.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <string_view>
 
@@ -33,6 +34,26 @@ public:
 private:
     bool isTerminal_;
     std::string stage_;
+};
+
+/// How far a list of jobs is, on standard error: a bar on a terminal, elsewhere a line for each
+/// that is done.
+class JobBar {
+public:
+    /// `secondsEach`: about what a job takes, for the time left until one is done.
+    JobBar(std::size_t jobs, double secondsEach);
+    /// `name`: of the job that is under way, `share` of it done.
+    void update(const std::string& name, double share);
+    void finishJob(const std::string& outcome);
+    void clear() const;
+
+private:
+    double secondsLeft(double share) const;
+
+    bool isTerminal_;
+    std::size_t jobs_, done_ = 0;
+    double secondsEach_, lastSeconds_ = -1e9;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 /// To standard error, at once. If nobody can read it that is no reason to lose a render.

@@ -3,32 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cctype>
-#include <csignal>
 
 #include "lens/fit_cache.h"
 #include "renderer/parallel.h"
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
 #include "renderer/srgb.h"
+#include "tools/stop_request.h"
 #include "tools/version.h"
 
 namespace etendue {
 
 namespace {
-
-std::atomic<int> stopRequests{0};
-static_assert(std::atomic<int>::is_always_lock_free);  // a signal handler may touch nothing else
-
-/// The first signal asks for the current pass to be finished and written; the second one ends at
-/// once.
-extern "C" void requestStop(int signal) {
-    if (++stopRequests > 1) {
-        std::signal(signal, SIG_DFL);
-        std::raise(signal);
-    }
-}
 
 FrameWindow windowFor(const RenderCommand& command, const FilmSettings& film) {
     FrameWindow window{film.width, film.height, 0, 0, film.width, film.height};
@@ -209,15 +196,14 @@ ExitCode runRender(const RenderCommand& command) {
     TechniqueImages techniques(film.window(), film.color());
     if (!command.techniqueImages.empty()) settings.techniqueImages = &techniques;
 
-    std::signal(SIGINT, requestStop);
-    std::signal(SIGTERM, requestStop);
+    heedStopRequests();
     Progress progress(command.progress);
     RenderProgress last;
     const RenderResult result = render(*loaded.scene, *loaded.camera, *estimator, filter, film,
                                        settings, [&](const RenderProgress& p) {
                                            last = p;
                                            progress.update(p);
-                                           return stopRequests == 0;
+                                           return !isStopRequested();
                                        });
     progress.finish(last);
     reportDefects(command, result);

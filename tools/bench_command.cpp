@@ -1,0 +1,177 @@
+#include "tools/bench_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lens/fit_cache.h"
+#include "renderer/parallel.h"
+#include "tools/agreement_report.h"
+#include "tools/progress.h"
+#include "tools/stop_request.h"
+
+namespace etendue {
+
+namespace {
+
+/// What was asked for by a name, and where it lies.
+struct NamedFile {
+    std::string name;
+    std::filesystem::path file;  // empty: the scene's own camera
+};
+
+std::vector<std::string> sceneNamesIn(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+        if (std::filesystem::exists(entry.path() / "scene.toml"))
+            names.push_back(entry.path().filename().string());
+    std::ranges::sort(names);
+    return names;
+}
+
+std::vector<std::string> cameraNamesIn(const std::filesystem::path& folder) {
+    std::vector<std::string> names{"own"};
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "cameras", error))
+        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+    return names;
+}
+
+[[noreturn]] void failUnknown(const std::string& kind, const std::string& name,
+                              const std::filesystem::path& folder,
+                              const std::vector<std::string>& known) {
+    std::string message = fmt::format("no {} \"{}\" in {}", kind, name, folder.string());
+    if (const auto nearest = nearestName(name, known))
+        message += fmt::format("; did you mean \"{}\"?", *nearest);
+    throw InputError(message, ExitCode::missingFile);
+}
+
+bool isFile(const std::filesystem::path& path) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(path, error);
+}
+
+NamedFile sceneCalled(const std::string& name, const std::filesystem::path& folder) {
+    const std::filesystem::path path = name;
+    if (isFile(path))
+        return {path.filename() == "scene.toml" && path.has_parent_path()
+                    ? path.parent_path().filename().string()
+                    : path.stem().string(),
+                path};
+    const std::filesystem::path file = folder / path / "scene.toml";
+    if (!isFile(file)) failUnknown("scene", name, folder, sceneNamesIn(folder));
+    return {name, file};
+}
+
+NamedFile cameraCalled(const std::string& name, const std::filesystem::path& folder) {
+    if (name == "own") return {name, {}};
+    const std::filesystem::path path = name;
+    if (isFile(path)) return {path.stem().string(), path};
+    const std::filesystem::path file = folder / "cameras" / (name + ".toml");
+    if (!isFile(file)) failUnknown("camera", name, folder / "cameras", cameraNamesIn(folder));
+    return {name, file};
+}
+
+std::vector<NamedFile> scenesOf(const AgreementCommand& command) {
+    const std::vector<std::string> names =
+        command.scenes.empty() ? sceneNamesIn(command.folder) : command.scenes;
+    if (names.empty())
+        throw InputError(fmt::format("{}: no folder in it has a scene.toml; --scenes names another",
+                                     command.folder.string()),
+                         ExitCode::missingFile);
+    std::vector<NamedFile> scenes;
+    for (const std::string& name : names) scenes.push_back(sceneCalled(name, command.folder));
+    return scenes;
+}
+
+/// A run over the matrix.
+class AgreementRun {
+public:
+    explicit AgreementRun(const AgreementCommand& command)
+        : command_(command), scenes_(scenesOf(command)) {
+        for (const std::string& name : command.cameras)
+            cameras_.push_back(cameraCalled(name, command.folder));
+        settings_.seeds = command.seeds;
+        settings_.samples = command.samples;
+        settings_.seconds = command.seconds;
+        settings_.bound = 0.01 * command.boundPercent;
+        settings_.threads = command.threads.value_or(hardwareThreads());
+        settings_.comparisons = scenes_.size() * cameras_.size() * command.estimators.size();
+        settings_.firstSeed = command.firstSeed;
+    }
+
+    void run() {
+        JobBar bar(settings_.comparisons, settings_.seconds);
+        for (const NamedFile& scene : scenes_)
+            for (const NamedFile& camera : cameras_) compareThrough(scene, camera, bar);
+        bar.clear();
+    }
+
+    const std::vector<AgreementRow>& rows() const { return rows_; }
+    const AgreementSettings& settings() const { return settings_; }
+
+private:
+    void compareThrough(const NamedFile& scene, const NamedFile& camera, JobBar& bar) {
+        std::optional<LoadedScene> loaded;
+        std::string failure;
+        const std::string title = fmt::format("{}, {}", scene.name, camera.name);
+        try {
+            if (!isStopRequested()) loaded = load(scene, camera, title, bar);
+            if (loaded && loaded->camera->settings().outerPupil)
+                throw InputError("estimator.pupil_sampling = \"outer\" is not compared");
+        } catch (const InputError& error) {
+            failure = error.what();
+            loaded.reset();
+        }
+        for (const std::string& estimator : command_.estimators) {
+            AgreementRow row{scene.name, camera.name, estimator, command_.reference, {}, failure};
+            if (loaded && !isStopRequested()) {
+                row.result = compareEstimators(
+                    *loaded, estimator, command_.reference, settings_, [&](double seconds) {
+                        bar.update(titleOf(row), std::min(1.0, seconds / settings_.seconds));
+                        return !isStopRequested();
+                    });
+            }
+            settings_.firstSeed += agreementSeeds(settings_);
+            if (row.result || !failure.empty())
+                bar.finishJob(fmt::format("{}: {}", titleOf(row), outcomeOf(row)));
+            rows_.push_back(row);
+        }
+    }
+
+    LoadedScene load(const NamedFile& scene, const NamedFile& camera, const std::string& title,
+                     JobBar& bar) const {
+        LoadOptions options;
+        options.overrides = command_.overrides;
+        options.overrides.push_back(fmt::format("film.width={}", command_.size[0]));
+        options.overrides.push_back(fmt::format("film.height={}", command_.size[1]));
+        options.threads = settings_.threads;
+        options.fitCache = fitCacheDirectory();
+        options.fitProgress = [&](double, std::string_view stage) {
+            bar.update(fmt::format("{}: {}", title, stage), 0.0);
+        };
+        options.camera = camera.file;
+        return loadScene(scene.file, options);
+    }
+
+    const AgreementCommand& command_;
+    std::vector<NamedFile> scenes_, cameras_;
+    AgreementSettings settings_;
+    std::vector<AgreementRow> rows_;
+};
+
+}  // namespace
+
+ExitCode runAgreement(const AgreementCommand& command) {
+    heedStopRequests();
+    AgreementRun agreement(command);
+    agreement.run();
+    if (command.asJson)
+        fmt::print("{}\n", agreementJson(agreement.rows(), agreement.settings()).text());
+    else
+        fmt::print("{}", agreementText(agreement.rows(), agreement.settings()));
+    return exitCodeOf(agreement.rows());
+}
+
+}  // namespace etendue

@@ -9,7 +9,7 @@ using namespace etendue;
 
 namespace {
 
-constexpr int width = 24, height = 16, tileSize = 8;
+constexpr int width = 24, tileSize = 8;
 constexpr std::uint64_t seeds = 16;
 
 std::string sceneWith(const std::string& camera, const std::string& rest) {

@@ -99,8 +99,8 @@ TEST_CASE("Agreement: estimators agree on what they share, and what they do not 
         const LoadedScene loaded = sceneFromText(everyMaterialScene, {color});
         AgreementSettings settings = fixedSamples(96);
         settings.comparisons = 6;
-        for (const auto& [tested, reference] :
-             {std::pair{"lt", "pt"}, {"bdpt", "pt"}, {"lt", "bdpt"}}) {
+        for (const auto& pair : {std::pair{"lt", "pt"}, {"bdpt", "pt"}, {"lt", "bdpt"}}) {
+            const std::string tested = pair.first, reference = pair.second;
             CAPTURE(tested);
             CAPTURE(reference);
             const auto agreement = compareEstimators(loaded, tested, reference, settings, {});

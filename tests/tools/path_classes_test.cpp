@@ -72,8 +72,9 @@ TEST_CASE("Path classes: what is left out and what is not are all of the picture
     for (const std::string& color : {std::string("film.color=auto"), dispersiveGlass}) {
         CAPTURE(color);
         const LoadedScene loaded = sceneFromText(everyMaterialScene, {color});
-        for (const auto& [kind, other] :
+        for (const auto& pair :
              {std::pair{"pt", "lt"}, {"lt", "pt"}, {"bdpt", "pt"}, {"bdpt", "lt"}}) {
+            const std::string kind = pair.first, other = pair.second;
             CAPTURE(kind);
             CAPTURE(other);
             const Outcome all = renderCommon(loaded, kind, kind);

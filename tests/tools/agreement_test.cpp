@@ -110,8 +110,8 @@ TEST_CASE("Agreement: estimators agree on what they share, and what they do not 
             CAPTURE(agreement->comparison.relativeBiasHalfWidth);
             CHECK(agreement->verdict != Verdict::differ);
             CHECK(agreement->comparison.isEquivalent(0.06));
-            const bool isLight = tested == std::string("lt");
-            const bool hasPath = reference == std::string("pt");
+            const bool isLight = tested == "lt";
+            const bool hasPath = reference == "pt";
             CHECK((shareOf(agreement->reference, PathClass::mirrorFirst) > 0.01) == isLight);
             CHECK((shareOf(agreement->tested, PathClass::mirroredPoint) > 0.001) == hasPath);
             CHECK(agreement->tested.bad.count == 0);

@@ -81,7 +81,8 @@ std::optional<Eigen::Vector2d> PolynomialLens::firstGuess(const Eigen::Vector3d&
 Connection PolynomialLens::solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture,
                                          double wavelengthNm) const {
     Connection connection;
-    const std::optional<Aimed> end = aim(target, aperture, wavelengthNm, connection);
+    const std::optional<Aimed> end =
+        aim(target, aperture, wavelengthNm, fineToleranceRadians, connection);
     if (connection.status == ConnectStatus::found) connection.sensor = SensorPoint{end->sensor};
     return connection;
 }
@@ -90,7 +91,10 @@ std::optional<Sighting> PolynomialLens::see(const Eigen::Vector3d& targetMm, Ape
                                             double wavelengthNm) const {
     if (!canSee(targetMm, aperture, wavelengthNm)) return {};
     Connection connection;
-    const std::optional<Aimed> end = aim(targetMm, aperture, wavelengthNm, connection);
+    // Mostly the first guess is as near, so that one evaluation of the fit does.
+    constexpr double toleranceRadians = 2e-5;
+    const std::optional<Aimed> end =
+        aim(targetMm, aperture, wavelengthNm, toleranceRadians, connection);
     if (connection.status != ConnectStatus::found) return {};
     return Sighting{{end->sensor}, end->ray};
 }
@@ -102,7 +106,8 @@ bool PolynomialLens::canSee(const Eigen::Vector3d& targetMm, AperturePoint apert
 }
 
 std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, AperturePoint aperture,
-                                         double wavelengthNm, Connection& connection) const {
+                                         double wavelengthNm, double toleranceRadians,
+                                         Connection& connection) const {
     const std::optional<Eigen::Vector2d> guess = firstGuess(target, aperture, wavelengthNm);
     if (!guess) {
         connection.status = ConnectStatus::outOfField;
@@ -115,7 +120,7 @@ std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, Aperture
         if (!(s.cwiseAbs().array() <= margin * domain_.sensorHalfSizeMm.array()).all()) return {};
         return map_.exitRay({s}, {apertureShare * aperture.mm}, wavelengthNm);
     };
-    TargetSolver solver(exit, focalLengthMm_);
+    TargetSolver solver(exit, focalLengthMm_, toleranceRadians);
     std::optional<Aimed> end = solver.newton(target, *guess);
     if (!end) end = solver.follow(target);
     connection.iterations = solver.steps();

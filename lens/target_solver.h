@@ -42,22 +42,36 @@ inline Miss missOf(const ExitRay& ray, const Eigen::Vector3d& target) {
     return miss;
 }
 
-/// The end of a search: the sensor point, and the exit ray of one within the tolerance of it.
+/// The end of a search: the sensor point, and its exit ray, carried there to first order from a
+/// point within the tolerance; derivatives and throughput are still that point's.
 struct Aimed {
     Eigen::Vector2d sensor;
     ExitRay ray;
 };
+
+/// To first order.
+inline Aimed carried(const Eigen::Vector2d& sensor, const ExitRay& ray,
+                     const Eigen::Vector2d& step) {
+    Aimed aimed{sensor + step, ray};
+    aimed.ray.origin += ray.originBySensor * step;
+    aimed.ray.direction = (ray.direction + ray.directionBySensor * step).normalized();
+    return aimed;
+}
+
+/// Where a search may end: its last step, unchecked, leaves the square of this, times up to 2 on
+/// the lenses there are: 5e-12.
+constexpr double fineToleranceRadians = 1.5e-6;
 
 /// Newton's method on the direction in which rays leave. `Exit`, called with a sensor point and the
 /// share of the aperture point to go through, gives an exit ray, rims ignored, or nothing.
 template <class Exit>
 class TargetSolver {
 public:
-    TargetSolver(const Exit& exit, double focalLengthMm)
-        : exit_(exit), longestStepMm_(0.5 * focalLengthMm) {}
-
-    /// The last step, unchecked, leaves its square, times up to 2 on the lenses there are: 5e-12.
-    static constexpr double toleranceRadians = 1.5e-6;
+    TargetSolver(const Exit& exit, double focalLengthMm,
+                 double toleranceRadians = fineToleranceRadians)
+        : exit_(exit),
+          longestStepMm_(0.5 * focalLengthMm),
+          squaredTolerance_(toleranceRadians * toleranceRadians) {}
 
     /// From the sensor point `s`, or where no ray leaves there, from one nearer the axis: rays that
     /// graze the first surface end the field abruptly. Steps are halved until the miss shrinks.
@@ -72,13 +86,13 @@ public:
         if (!ray) return {};
         Miss miss = missOf(*ray, target);
         constexpr int mostSteps = 12;
-        for (int i = 0; !(miss.squared <= toleranceRadians * toleranceRadians); ++i) {
+        for (int i = 0; !(miss.squared <= squaredTolerance_); ++i) {
             if (i == mostSteps || !miss.sensorStep.allFinite()) return {};
             ++steps_;
             if (!improve(target, apertureShare, s, *ray, miss)) return {};
         }
         // One more step squares what is missing.
-        return Aimed{s + miss.sensorStep, *ray};
+        return carried(s, *ray, miss.sensorStep);
     }
 
     /// From the ray along the axis outward: aperture point and target are led from there to their
@@ -137,6 +151,7 @@ private:
 
     const Exit& exit_;
     double longestStepMm_;  // beyond which a lens does not turn rays evenly
+    double squaredTolerance_;
     int steps_ = 0;
 };
 

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -111,15 +112,16 @@ inline void checkRatio(const std::vector<double>& a, std::vector<double> b, doub
     CHECK(std::abs(welch.difference) + 3.0 * welch.standardError < bound * mean);
 }
 
-/// a = `expected`, a number without an error.
+/// a = `expected`, a number that is wrong by `systematic` of it at most.
 inline void checkMean(const std::vector<double>& a, double expected, double bound,
-                      double level = falseAlarmLevel) {
+                      double level = falseAlarmLevel, double systematic = 0.0) {
     const Summary summary = summarize(a);
     CAPTURE(expected);
     CAPTURE(summary.mean);
     CAPTURE(summary.standardError);
     const double difference = summary.mean - expected;
-    CHECK(chanceOf(difference, expected, summary.standardError,
+    const double excess = std::max(0.0, std::abs(difference) - systematic * expected);
+    CHECK(chanceOf(excess, expected, summary.standardError,
                    static_cast<double>(summary.count) - 1.0) > level);
     CHECK(std::abs(difference) + 3.0 * summary.standardError < bound * expected);
 }

@@ -383,10 +383,7 @@ public:
         BidirectionalSample sample(view, color, settings_, techniques_, result, scratch);
         // The last light path is the one that the camera's is connected to.
         for (int i = 0; i < lightPathsPerSample(); ++i) {
-            const auto path = static_cast<std::uint32_t>(i);
-            RandomStream random(id.seed, pixelIndex(view, id),
-                                id.sample * static_cast<std::uint32_t>(settings_.lightPaths) + path,
-                                RandomDomain::lightPath);
+            RandomStream random = lightPathRandom(view, id, i, settings_.lightPaths);
             sample.walkFromLight(random);
             sample.connectToLens(random);
         }

@@ -17,24 +17,47 @@ constexpr Kind kinds[] = {
     {"bdpt", makeBidirectional},
 };
 
-}  // namespace
-
+/// The index of the random numbers that belong to a pixel.
 std::uint32_t pixelIndex(const View& view, SampleId id) {
     return static_cast<std::uint32_t>(id.y) *
                static_cast<std::uint32_t>(view.camera.settings().width) +
            static_cast<std::uint32_t>(id.x);
 }
 
+/// A pixel's numbers for one purpose, stratified over its samples.
+RandomStream pixelRandom(const View& view, SampleId id, RandomDomain domain) {
+    const std::uint32_t pixel = pixelIndex(view, id);
+    const RandomStream random(id.seed, pixel, id.sample, domain);
+    return id.sampler == Sampler::sobol ? RandomStream(random, pixel, id.sample) : random;
+}
+
+}  // namespace
+
+RandomStream cameraPathRandom(const View& view, SampleId id) {
+    return pixelRandom(view, id, RandomDomain::cameraPath);
+}
+
+RandomStream lightPathRandom(const View& view, SampleId id, int path, int count) {
+    const std::uint32_t pixel = pixelIndex(view, id);
+    const std::uint32_t sample =
+        id.sample * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(path);
+    const RandomStream random(id.seed, pixel, sample, RandomDomain::lightPath);
+    if (id.sampler != Sampler::sobol) return random;
+    const CameraSettings& frame = view.camera.settings();
+    const auto pixels =
+        static_cast<std::uint32_t>(frame.width) * static_cast<std::uint32_t>(frame.height);
+    return RandomStream(random, 0, sample * pixels + pixel);
+}
+
 bool isParted(const View& view) { return view.isSpectral && view.camera.settings().isDispersive; }
 
 SpectralSample drawWavelengths(const View& view, SampleId id) {
     if (!view.isSpectral) return {};
-    RandomStream random(id.seed, pixelIndex(view, id), id.sample, RandomDomain::wavelength);
-    return sampleWavelengths(random.next());
+    return sampleWavelengths(pixelRandom(view, id, RandomDomain::wavelength).next());
 }
 
 CameraSample drawCameraSample(const View& view, SampleId id) {
-    CameraSample result{.random = RandomStream(id.seed, pixelIndex(view, id), id.sample),
+    CameraSample result{.random = cameraPathRandom(view, id),
                         .color = drawWavelengths(view, id),
                         .film = {},
                         .apertureUniform = {},

@@ -41,6 +41,7 @@ struct SampleId {
     std::uint64_t seed = 0;
     int x = 0, y = 0;  // pixel of the full frame
     std::uint32_t sample = 0;
+    Sampler sampler = Sampler::independent;
 };
 
 /// What the camera ray met first, for the auxiliary images.
@@ -105,8 +106,11 @@ bool isParted(const View& view);
 /// What `ray` meets first.
 std::optional<FirstHit> firstHitOf(const Scene& scene, const CameraRay& ray);
 
-/// The index of the random numbers that belong to a pixel.
-std::uint32_t pixelIndex(const View& view, SampleId id);
+/// The random numbers of a sample's camera path. A pixel's are stratified among themselves.
+RandomStream cameraPathRandom(const View& view, SampleId id);
+/// Of its light path number `path` out of `count`. Stratified among all of the frame's, which may
+/// fall anywhere.
+RandomStream lightPathRandom(const View& view, SampleId id, int path, int count);
 
 /// The kinds that makeEstimator knows.
 const std::vector<std::string>& estimatorKinds();

@@ -1,11 +1,12 @@
 // Counter-based random numbers: the same (seed, stream, sample, dimension) gives the same number on
 // any machine, in any order, on any number of threads. Philox 4x32-7, Salmon et al. 2011,
-// "Parallel Random Numbers: As Easy as 1, 2, 3".
+// "Parallel Random Numbers: As Easy as 1, 2, 3"; or Sobol' points that it scrambles (sobol.h).
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "renderer/sobol.h"
 #include "renderer/vec.h"
 
 namespace etendue {
@@ -39,17 +40,58 @@ constexpr float uniformFloat(std::uint32_t bits) {
 /// independent.
 enum class RandomDomain : std::uint32_t { cameraPath = 0, lightPath = 1, test = 2, wavelength = 3 };
 
+/// How the numbers of one sample go with those of the others.
+enum class Sampler {
+    independent,
+    sobol,  // stratified together, in the first sobolDimensions numbers of each
+};
+
 /// The numbers of one path, dimension after dimension.
 class RandomStream {
 public:
-    /// `index` is the pixel's or light path's index, `sample` the global sample index.
+    /// Independent ones. `index` is the pixel's or light path's index, `sample` the global sample
+    /// index.
     constexpr RandomStream(std::uint64_t seed, std::uint32_t index, std::uint32_t sample,
                            RandomDomain domain = RandomDomain::cameraPath)
         : key0_(static_cast<std::uint32_t>(seed)),
           key1_(static_cast<std::uint32_t>(seed >> 32)),
           counter_{0, sample, index, static_cast<std::uint32_t>(domain)} {}
 
-    constexpr std::uint32_t nextBits() {
+    /// Point number `point` of a Sobol' sequence; those of each `sequence` and seed are scrambled
+    /// by themselves. After sobolDimensions numbers the stream goes on as `independent`, which must
+    /// be fresh and of the same seed and domain.
+    RandomStream(const RandomStream& independent, std::uint32_t sequence, std::uint32_t point)
+        : RandomStream(independent) {
+        sample_ = counter_[1];
+        index_ = counter_[2];
+        counter_[1] = ~0u;  // no sample has this number
+        counter_[2] = sequence;
+        // The order of the points, shuffled in the nested way that keeps them stratified, so that
+        // domains with the same point number are independent.
+        point_ = owenScrambled(point, nextBits());
+        dimension_ = 0;
+    }
+
+    std::uint32_t nextBits() {
+        if (dimension_ < sobolDimensions) {
+            const std::uint32_t scramble = nextIndependentBits();
+            const std::uint32_t bits = owenScrambled(sobolBits(point_, dimension_), scramble);
+            if (++dimension_ == sobolDimensions) {
+                counter_ = {counter_[0], sample_, index_, counter_[3]};
+                used_ = 4;
+            }
+            return bits;
+        }
+        return nextIndependentBits();
+    }
+    float next() { return uniformFloat(nextBits()); }
+    Vec2 next2() {
+        const float x = next();
+        return {x, next()};
+    }
+
+private:
+    constexpr std::uint32_t nextIndependentBits() {
         if (used_ == 4) {
             block_ = philox(counter_, key0_, key1_);
             ++counter_[0];
@@ -57,17 +99,13 @@ public:
         }
         return block_[used_++];
     }
-    constexpr float next() { return uniformFloat(nextBits()); }
-    constexpr Vec2 next2() {
-        const float x = next();
-        return {x, next()};
-    }
 
-private:
     std::uint32_t key0_, key1_;
     PhiloxBlock counter_;
     PhiloxBlock block_{};
     std::uint32_t used_ = 4;
+    std::uint32_t dimension_ = sobolDimensions;  // from there on numbers are independent
+    std::uint32_t point_ = 0, sample_ = 0, index_ = 0;
 };
 
 }  // namespace etendue

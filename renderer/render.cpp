@@ -46,12 +46,13 @@ bool contains(const FrameWindow& window, int x, int y) {
 }
 
 /// Everything a thread needs to take samples.
-struct Sampler {
+struct Recorder {
     const View& view;
     const Estimator& estimator;
     Film& film;
     TechniqueImages* images;
     std::uint64_t seed;
+    Sampler sampler;
 
     std::mutex badMutex{};
     std::vector<BadSample> bad{};
@@ -60,7 +61,7 @@ struct Sampler {
     /// it splats.
     void takeSample(int x, int y, std::uint32_t index, Sample& sample, SplatList& splats) {
         const bool isOwn = contains(film.window(), x, y);
-        estimator.takeSample(view, {seed, x, y, index},
+        estimator.takeSample(view, {seed, x, y, index, sampler},
                              {.ownPixel = isOwn, .firstHit = isOwn && film.wantsFeatures()},
                              sample);
         Spectrum sum;
@@ -91,20 +92,22 @@ struct Sampler {
 
 /// A pass over the frame, in parts few enough that their splats fit in memory. Splats are added
 /// sample by sample, in the order of the tiles: the same bits, whatever the pass and the thread.
-void takePass(Sampler& sampler, const std::vector<Tile>& tiles, std::uint32_t first,
+void takePass(Recorder& recorder, const std::vector<Tile>& tiles, std::uint32_t first,
               std::uint32_t count, int threads) {
     for (std::size_t begin = 0; begin < tiles.size(); begin += tilesPerPart) {
         const std::size_t size = std::min(tilesPerPart, tiles.size() - begin);
-        std::vector<SplatList> splats(size, SplatList(sampler.film.window(), sampler.view.filter));
+        std::vector<SplatList> splats(size,
+                                      SplatList(recorder.film.window(), recorder.view.filter));
         parallelFor(size, threads, [&](std::size_t i) {
             const Tile& tile = tiles[begin + i];
             Sample sample;
             for (std::uint32_t s = first; s < first + count; ++s)
                 for (int y = tile.y; y < tile.y + tile.height; ++y)
                     for (int x = tile.x; x < tile.x + tile.width; ++x)
-                        sampler.takeSample(x, y, s, sample, splats[i]);
+                        recorder.takeSample(x, y, s, sample, splats[i]);
         });
-        addSplats(splats, sampler.view.filter, first, count, threads, sampler.film, sampler.images);
+        addSplats(splats, recorder.view.filter, first, count, threads, recorder.film,
+                  recorder.images);
     }
 }
 
@@ -149,14 +152,15 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
                        : std::numeric_limits<double>::infinity();
     const std::uint64_t refusedBefore = scene.refusedRays();
     const View view{scene, camera, filter, film.color() == FilmColor::xyz};
-    Sampler sampler{view, estimator, film, settings.techniqueImages, settings.seed};
+    Recorder recorder{view,          estimator,       film, settings.techniqueImages,
+                      settings.seed, settings.sampler};
     RenderResult result;
     while (result.samples < settings.samples && !result.wasInterrupted &&
            result.seconds < settings.timeLimitSeconds) {
         const std::uint32_t first = result.samples;
         const std::uint32_t count = passSize(first, settings.samples, result.seconds,
                                              settings.timeLimitSeconds, mostSamples);
-        takePass(sampler, tiles, first, count, settings.threads);
+        takePass(recorder, tiles, first, count, settings.threads);
         film.addLightPaths(count * framePixels * lightPaths);
         film.addSamples(count);
         result.samples += count;
@@ -168,8 +172,8 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
                                       pixels * result.samples / std::max(result.seconds, 1e-9)};
         if (onPass && !onPass(progress)) result.wasInterrupted = result.samples < settings.samples;
     }
-    result.badSampleCount = sampler.bad.size();
-    result.badSamples = firstOf(std::move(sampler.bad));
+    result.badSampleCount = recorder.bad.size();
+    result.badSamples = firstOf(std::move(recorder.bad));
     result.refusedRays = scene.refusedRays() - refusedBefore;
     return result;
 }

@@ -21,6 +21,7 @@ inline constexpr std::uint32_t unlimitedSamples = 1u << 30;
 struct RenderSettings {
     std::uint32_t samples = 64;  // per pixel
     std::uint64_t seed = 0;
+    Sampler sampler = Sampler::independent;
     int threads = 1;
     double timeLimitSeconds = std::numeric_limits<double>::infinity();
     TechniqueImages* techniqueImages = nullptr;  // receives them, if wanted

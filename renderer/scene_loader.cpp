@@ -72,6 +72,8 @@ void loadEstimator(const ConfigTable& table, LoadedScene& loaded) {
                        "the light, t ≥ 1 from the camera");
         e.techniques = *set;
     }
+    if (table.choice("sampler", {"independent", "sobol"}, "independent") == "sobol")
+        loaded.sampler = Sampler::sobol;
     loaded.samples = static_cast<int>(table.integer("samples", {1, 1 << 30}, loaded.samples));
     table.finish();
 }

@@ -29,6 +29,7 @@ struct LoadedScene {
     std::unique_ptr<Camera> camera;
     FilmSettings film;
     EstimatorSettings estimator;
+    Sampler sampler = Sampler::independent;
     int samples = 64;
     std::vector<std::string> notes;  // what the user should know, but what is not an error
     std::string hash;  // of the bytes of every file read and of the overrides, as 32 hex digits

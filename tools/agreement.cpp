@@ -132,6 +132,7 @@ private:
         RenderSettings settings;
         settings.samples = samples;
         settings.seed = seed;
+        settings.sampler = loaded_.sampler;
         const RenderResult result =
             etendue::render(*loaded_.scene, *loaded_.camera, *estimator, filter_, film, settings,
                             [&](const RenderProgress&) {

@@ -190,6 +190,7 @@ ExitCode runRender(const RenderCommand& command) {
         command.timeLimitSeconds ? static_cast<int>(unlimitedSamples) : loaded.samples;
     settings.samples = static_cast<std::uint32_t>(command.samples.value_or(fallback));
     settings.seed = command.seed;
+    settings.sampler = loaded.sampler;
     settings.threads = threads;
     if (command.timeLimitSeconds) settings.timeLimitSeconds = *command.timeLimitSeconds;
     checkEstimator(command, loaded.estimator.kind);

@@ -249,8 +249,10 @@ LoadedScene load(const ReplayCommand& command) {
     return loaded;
 }
 
-SampleId sampleId(const ReplayCommand& command, const FilmSettings& film) {
-    const SampleId id{command.seed, command.pixel[0], command.pixel[1], command.sample};
+SampleId sampleId(const ReplayCommand& command, const LoadedScene& loaded) {
+    const FilmSettings& film = loaded.film;
+    const SampleId id{command.seed, command.pixel[0], command.pixel[1], command.sample,
+                      loaded.sampler};
     if (id.x >= film.width || id.y >= film.height)
         throw InputError(fmt::format("--pixel {},{}: must lie in the frame of {} × {} pixels", id.x,
                                      id.y, film.width, film.height),
@@ -262,7 +264,7 @@ SampleId sampleId(const ReplayCommand& command, const FilmSettings& film) {
 
 ExitCode runReplay(const ReplayCommand& command) {
     const LoadedScene loaded = load(command);
-    const SampleId id = sampleId(command, loaded.film);
+    const SampleId id = sampleId(command, loaded);
     const Filter filter(loaded.film.filter, loaded.film.filterRadius);
     const View view{*loaded.scene, *loaded.camera, filter, loaded.film.color == FilmColor::xyz};
     const auto estimator = makeEstimator(loaded.estimator);

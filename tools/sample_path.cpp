@@ -183,11 +183,9 @@ void retraceLightPaths(const View& view, const EstimatorSettings& settings, Samp
     const Wavelengths wavelengths = drawWavelengths(view, id).wavelengths;
     result.lightPaths.resize(static_cast<std::size_t>(lightPaths));
     for (int i = 0; i < lightPaths; ++i) {
-        const auto path = static_cast<std::uint32_t>(i);
-        RandomStream random(id.seed, pixelIndex(view, id),
-                            id.sample * static_cast<std::uint32_t>(lightPaths) + path,
-                            RandomDomain::lightPath);
-        walkFromLight(view.scene, wavelengths, settings, random, result.lightPaths[path]);
+        RandomStream random = lightPathRandom(view, id, i, lightPaths);
+        walkFromLight(view.scene, wavelengths, settings, random,
+                      result.lightPaths[static_cast<std::size_t>(i)]);
     }
 }
 

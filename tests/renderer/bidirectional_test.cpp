@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "statistics/statistics.h"
 #include "tests/support/scenes.h"
 
 using namespace etendue;
@@ -171,6 +172,30 @@ transform = [{scale = [0.7, 0.5, 0.4]}, {rotate = [0, 1, 0, 35]}, {translate = [
     // Through the prism a camera path is left with its hero, and so is a light path.
     for (const std::string& camera : {thinLens, pinhole})
         checkAgreement(sceneWith(camera, room(matte) + areaLamp + prism), {"bdpt"}, 128, 0.08);
+}
+
+TEST_CASE("Estimators: Sobol' numbers make the same picture, with less noise" *
+          doctest::test_suite("statistical")) {
+    const std::string scene = sceneWith(thinLens, room(matte) + areaLamp);
+    for (const std::string estimator : {"pt", "lt", "bdpt"}) {
+        CAPTURE(estimator);
+        const auto picturesBy = [&](const std::string& sampler, std::uint64_t firstSeed) {
+            return pictures(sceneFromText(scene, {"estimator.kind=" + estimator,
+                                                  "estimator.sampler=" + sampler}),
+                            64, firstSeed);
+        };
+        const auto independent = picturesBy("independent", 1), sobol = picturesBy("sobol", 1000);
+        const PictureComparison comparison = comparePictures(sobol, independent, width, tileSize);
+        CAPTURE(comparison.smallestP);
+        CAPTURE(comparison.relativeBias);
+        CHECK(comparison.agree());
+        CHECK(comparison.isEquivalent(0.05));
+        const double ratio =
+            summarize(meansOf(independent)).variance / summarize(meansOf(sobol)).variance;
+        CAPTURE(ratio);
+        // F's 99th percentile at 15 and 15 degrees of freedom: more than chance brings about.
+        CHECK(ratio > 3.52);
+    }
 }
 
 TEST_CASE("Estimators: light that enters through the outer pupil makes the same picture" *

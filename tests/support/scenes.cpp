@@ -17,6 +17,7 @@ std::vector<float> renderPixels(const LoadedScene& loaded, std::uint32_t samples
     RenderSettings settings;
     settings.samples = samples;
     settings.seed = seed;
+    settings.sampler = loaded.sampler;
     settings.threads = threads;
     const RenderResult result =
         render(*loaded.scene, *loaded.camera, *estimator, filter, film, settings, {});

@@ -191,24 +191,9 @@ TEST_CASE("Extremes: a floor seen at a grazing angle") {
 }
 
 TEST_CASE("Extremes: shading normals at a grazing angle") {
-    // Every corner of a floor of 8 × 8 squares has a normal 85° off the floor's.
-    std::string obj;
-    for (int j = 0; j <= 8; ++j)
-        for (int i = 0; i <= 8; ++i)
-            obj += "v " + number(-3 + 0.75 * i) + " 0 " + number(3 - 0.75 * j) + "\n";
-    const double up = std::cos(85.0 * std::numbers::pi / 180.0), out = std::sqrt(1.0 - up * up);
-    for (const char* sign : {"", "-"})
-        obj += std::string("vn ") + sign + number(out) + " " + number(up) + " 0\n";
-    for (int j = 0; j < 8; ++j)
-        for (int i = 0; i < 8; ++i) {
-            const auto corner = [&](int x, int y) {
-                return std::to_string(1 + x + 9 * y) + "//" + std::to_string(1 + (x + y) % 2) + " ";
-            };
-            obj += "f " + corner(i, j) + corner(i + 1, j) + corner(i + 1, j + 1) +
-                   corner(i, j + 1) + "\n";
-        }
+    // 85° off the floor's.
     const TemporaryFolder folder;
-    folder.write("bumps.obj", obj);
+    folder.write("bumps.obj", bumpyFloor(85.0));
     const LoadedScene loaded = loadScene(
         folder.write("scene.toml", film() + thinLens(standing, 2.0, "3.4") + room() +
                                        "[[mesh]]\nfile = \"bumps.obj\"\nmaterial = \"grey\"\n"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdio>
+#include <numbers>
 #include <string>
 
 #include "tests/renderer/estimator_means.h"
@@ -48,6 +49,27 @@ inline std::string room(
            mesh("rectangle", "grey", "{scale = 3}, {translate = [0, 1, -1]}" + scaled) +
            mesh("box", "grey", "{scale = 0.4}, {translate = [0.3, 0.4, 0]}" + scaled) +
            mesh("rectangle", "lamp", lampPlace + scaled);
+}
+
+/// An OBJ of 8 × 8 squares, as wide as the room's floor. The normals of its corners lean so far to
+/// either side in turn.
+inline std::string bumpyFloor(double leanDegrees) {
+    std::string obj;
+    for (int j = 0; j <= 8; ++j)
+        for (int i = 0; i <= 8; ++i)
+            obj += "v " + number(-3 + 0.75 * i) + " 0 " + number(3 - 0.75 * j) + "\n";
+    const double up = std::cos(leanDegrees * std::numbers::pi / 180.0);
+    for (const double side : {1.0, -1.0})
+        obj += "vn " + number(side * std::sqrt(1.0 - up * up)) + " " + number(up) + " 0\n";
+    for (int j = 0; j < 8; ++j)
+        for (int i = 0; i < 8; ++i) {
+            const auto corner = [&](int x, int y) {
+                return std::to_string(1 + x + 9 * y) + "//" + std::to_string(1 + (x + y) % 2) + " ";
+            };
+            obj += "f " + corner(i, j) + corner(i + 1, j) + corner(i + 1, j + 1) +
+                   corner(i, j + 1) + "\n";
+        }
+    return obj;
 }
 
 /// Radiance 1 from all that the camera sees.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "renderer/bidirectional_sample.h"
 #include "renderer/visibility.h"
 
 namespace etendue {
@@ -200,23 +201,6 @@ bool walksFromCamera(const EstimatorSettings& settings) {
     return settings.kind != "lt" && settings.techniques.needsCameraWalk(settings.maxDepth);
 }
 
-bool isFoundByConnecting(const View& view, const CameraSample& sample, const CameraSubpath& path) {
-    // As in renderer/bidirectional.cpp: far below the distance of two roots, far above the rounding
-    // of the vertex.
-    constexpr float tolerance = 0.1f;  // pixels
-    const Wavelengths& wavelengths = sample.color.wavelengths;
-    std::optional<CameraConnection> connection;
-    if (path.vertices.size() >= 2) {
-        connection = view.camera.connect(path.vertices[1].point.position, sample.apertureUniform,
-                                         wavelengths);
-    } else if (path.escape) {
-        connection = view.camera.connectToInfinity(path.escape->direction, sample.apertureUniform,
-                                                   wavelengths);
-    }
-    return connection && std::abs(connection->film.x - sample.film.x) < tolerance &&
-           std::abs(connection->film.y - sample.film.y) < tolerance;
-}
-
 }  // namespace
 
 void retraceSample(const View& view, const Estimator& estimator, const EstimatorSettings& settings,
@@ -243,7 +227,7 @@ void retraceSample(const View& view, const Estimator& estimator, const Estimator
 void markReachability(const View& view, SamplePath& path) {
     if (!path.cameraPath.vertices.empty())
         path.cameraPath.vertices.front().density.isConnectable =
-            isFoundByConnecting(view, *path.camera, path.cameraPath);
+            isReachable(view, *path.camera, path.cameraPath);
 }
 
 }  // namespace etendue

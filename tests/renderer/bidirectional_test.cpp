@@ -1,6 +1,7 @@
 // Path tracing, light tracing and bidirectional path tracing estimate one picture.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "statistics/statistics.h"
@@ -172,6 +173,22 @@ transform = [{scale = [0.7, 0.5, 0.4]}, {rotate = [0, 1, 0, 35]}, {translate = [
     // Through the prism a camera path is left with its hero, and so is a light path.
     for (const std::string& camera : {thinLens, pinhole})
         checkAgreement(sceneWith(camera, room(matte) + areaLamp + prism), {"bdpt"}, 128, 0.08);
+}
+
+TEST_CASE("Estimators: a mirror that shines is seen once, by the camera's walk and the light's") {
+    checkAgreement(sceneWith(thinLens, R"(
+[[material]]
+name = "shining mirror"
+type = "conductor"
+color = [0, 0, 0]
+roughness = 0
+emission = [2, 2, 2]
+[[mesh]]
+shape = "rectangle"
+material = "shining mirror"
+transform = [{scale = 9}]
+)"),
+                   {"bdpt"}, 32, 0.02);
 }
 
 TEST_CASE("Estimators: Sobol' numbers make the same picture, with less noise" *

@@ -21,6 +21,20 @@ double meanThroughput(const TracedLens& lens, const MonochromaticLens& atLine, S
     return sum / (grid * grid);
 }
 
+/// Whether the mean is `least` at least, for which a bright sensor point takes few rays.
+bool isBright(const TracedLens& lens, const MonochromaticLens& atLine, SensorPoint sensor, int grid,
+              double least) {
+    double missing = least * (grid * grid);
+    for (int i = 0; i < grid; ++i)
+        for (int j = 0; j < grid; ++j) {
+            const AperturePoint aperture =
+                lens.sampleAperture({(i + 0.5) / grid, (j + 0.5) / grid});
+            if (const auto ray = atLine.trace(sensor, aperture)) missing -= ray->throughput;
+            if (missing <= 0.0) return true;
+        }
+    return false;
+}
+
 double fullAngleDegrees(const MonochromaticLens& lens, const Eigen::Vector2d& edge) {
     const std::optional<ExitRay> ray = lens.chiefRay({edge});
     if (!ray) return std::numeric_limits<double>::quiet_NaN();
@@ -38,21 +52,29 @@ double relativeIllumination(const TracedLens& lens, SensorPoint sensor, double w
 }
 
 double imageHeightMm(const TracedLens& lens, const Eigen::Vector2d& along, double share) {
-    constexpr int grid = 12, halvings = 20, mostSteps = 3200;
+    constexpr int coarse = 12, halvings = 12, mostSteps = 3200;
     const MonochromaticLens atLine(lens, dLineNm);
-    const double least = share * meanThroughput(lens, atLine, {{0.0, 0.0}}, grid);
+    const double least = share * meanThroughput(lens, atLine, {{0.0, 0.0}}, coarse);
     if (!(least > 0.0)) return 0.0;
-    const auto isBright = [&](double height) {
-        return meanThroughput(lens, atLine, {height * along}, grid) >= least;
-    };
     const double step = std::abs(lens.focalLengthMm()) / 32.0;
     double low = 0.0;
+    int steps = 0;
     // J falls as the height's fourth power.
-    for (int i = 0; i < mostSteps && isBright(low + step); ++i) low += step;
+    const auto walk = [&](int grid) {
+        while (steps < mostSteps && isBright(lens, atLine, {(low + step) * along}, grid, least)) {
+            low += step;
+            ++steps;
+        }
+    };
+    // A grid that has two points where such a share of the aperture is open would be slow all the
+    // way; the coarse one stops too early where a share below one of its points is left.
+    walk(coarse);
+    const int fine = std::max(coarse, static_cast<int>(std::ceil(std::sqrt(2.0 / share))));
+    walk(fine);
     double high = low + step;
     for (int i = 0; i < halvings; ++i) {
         const double middle = 0.5 * (low + high);
-        (isBright(middle) ? low : high) = middle;
+        (isBright(lens, atLine, {middle * along}, fine, least) ? low : high) = middle;
     }
     return low;
 }

@@ -34,7 +34,8 @@ TracedLens::TracedLens(const Prescription& prescription, const Aperture& apertur
                        double sensorDistanceMm)
     : system_(withAperture(prescription, aperture)),
       sensorZMm_(system_.surfaces.back().vertexZMm - sensorDistanceMm),
-      stopMap_(stopMap(system_, sensorDistanceMm)) {
+      stopMap_(stopMap(system_, sensorDistanceMm)),
+      stopSearch_({system_, refractiveIndices(system_, dLineNm), dLineNm}, sensorZMm_) {
     if (!(sensorDistanceMm > 0.0 && std::isfinite(sensorDistanceMm)))
         throw std::invalid_argument("traced lens: the sensor must be behind the last surface");
     const ParaxialData data = paraxialData(system_);
@@ -61,6 +62,12 @@ Connection TracedLens::solve(const Eigen::Vector3d& targetMm, AperturePoint aper
                              double wavelengthNm, ConnectMethod method) const {
     if (!isInRange(wavelengthNm)) return {ConnectStatus::outOfField, {}, 0};
     return MonochromaticLens(*this, wavelengthNm).solve(targetMm, aperture, method);
+}
+
+std::optional<Sighting> TracedLens::see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                                        double wavelengthNm) const {
+    if (!isInRange(wavelengthNm)) return {};
+    return MonochromaticLens(*this, wavelengthNm).see(targetMm, aperture);
 }
 
 AperturePoint TracedLens::sampleAperture(Eigen::Vector2d u) const {

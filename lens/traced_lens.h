@@ -10,6 +10,7 @@
 #include "lens/paraxial.h"
 #include "lens/phase_space.h"
 #include "lens/sequential_trace.h"
+#include "lens/stop_search.h"
 
 namespace etendue {
 
@@ -47,6 +48,9 @@ public:
                                  double wavelengthNm) const override;
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                        double wavelengthNm) const override;
+    /// The derivatives are those of a ray that leaves within the search's tolerance of it.
+    std::optional<Sighting> see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                                double wavelengthNm) const override;
     /// connect(), and how it went. A lens without a domain has no end of its field: outOfField says
     /// that the wavelength, the aperture point or the target is none for this lens.
     Connection solve(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm,
@@ -63,12 +67,15 @@ public:
     const StopMap& paraxialStopMap() const { return stopMap_; }
     /// The mean of x and y at the d line; negative for a lens that diverges.
     double focalLengthMm() const { return focalLengthMm_; }
+    /// Where connect() searches.
+    const StopSearch& stopSearch() const { return stopSearch_; }
 
 private:
     OpticalSystem system_;
     double sensorZMm_;
     StopMap stopMap_;
     double focalLengthMm_;  // the mean of x and y
+    StopSearch stopSearch_;
 };
 
 class MonochromaticLens {
@@ -87,6 +94,7 @@ public:
                                        AperturePoint aperture) const {
         return solve(targetMm, aperture).sensor;
     }
+    std::optional<Sighting> see(const Eigen::Vector3d& targetMm, AperturePoint aperture) const;
     Connection solve(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                      ConnectMethod method = ConnectMethod::newton) const;
 
@@ -102,7 +110,9 @@ public:
 private:
     template <TraceMode mode>
     std::optional<ExitRay> exitRay(SensorPoint sensor, AperturePoint aperture) const;
-    Connection solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture) const;
+    /// Our search, and how it went; the connection's sensor point is not set.
+    std::optional<Sighting> aim(const Eigen::Vector3d& target, AperturePoint aperture,
+                                Connection& connection) const;
     Connection solveByTwoSteps(const Eigen::Vector3d& target, AperturePoint aperture) const;
 
     const TracedLens* lens_;

@@ -129,33 +129,6 @@ std::optional<ExitRay> MonochromaticLens::chiefRay(SensorPoint sensor) const {
     return exitRay<TraceMode::geometry>(sensor, {{0.0, 0.0}});
 }
 
-Connection MonochromaticLens::solve(const Eigen::Vector3d& targetMm, AperturePoint aperture,
-                                    ConnectMethod method) const {
-    if (!lens_->system().aperture.contains(aperture.mm) || !targetMm.allFinite())
-        return {ConnectStatus::outOfField, {}, 0};
-    return method == ConnectMethod::newton ? solveByNewton(targetMm, aperture)
-                                           : solveByTwoSteps(targetMm, aperture);
-}
-
-Connection MonochromaticLens::solveByNewton(const Eigen::Vector3d& target,
-                                            AperturePoint aperture) const {
-    const auto exit = [&](const Eigen::Vector2d& s, double apertureShare) {
-        return exitRay<TraceMode::geometry>({s}, {apertureShare * aperture.mm});
-    };
-    TargetSolver solver(exit, std::abs(lens_->focalLengthMm()));
-    const auto passing = [&](const std::optional<Aimed>& end) -> Connection {
-        if (!end) return {ConnectStatus::unsolved, {}, solver.steps()};
-        if (!trace({end->sensor}, aperture)) return {ConnectStatus::blocked, {}, solver.steps()};
-        return {ConnectStatus::found, SensorPoint{end->sensor}, solver.steps()};
-    };
-    const Connection direct = passing(solver.newton(target, {0.0, 0.0}));
-    if (direct.sensor) return direct;
-    Connection followed = passing(solver.follow(target));
-    // One root has been found, and is blocked.
-    if (followed.status == ConnectStatus::unsolved) followed.status = direct.status;
-    return followed;
-}
-
 Connection MonochromaticLens::solveByTwoSteps(const Eigen::Vector3d& target,
                                               AperturePoint aperture) const {
     const MonochromaticSystem view = system();

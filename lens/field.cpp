@@ -66,10 +66,10 @@ double imageHeightMm(const TracedLens& lens, const Eigen::Vector2d& along, doubl
             ++steps;
         }
     };
-    // A grid that has two points where such a share of the aperture is open would be slow all the
+    // A grid that has four points where such a share of the aperture is open would be slow all the
     // way; the coarse one stops too early where a share below one of its points is left.
     walk(coarse);
-    const int fine = std::max(coarse, static_cast<int>(std::ceil(std::sqrt(2.0 / share))));
+    const int fine = std::max(coarse, static_cast<int>(std::ceil(2.0 / std::sqrt(share))));
     walk(fine);
     double high = low + step;
     for (int i = 0; i < halvings; ++i) {

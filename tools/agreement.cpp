@@ -8,6 +8,7 @@
 
 #include "renderer/parallel.h"
 #include "statistics/statistics.h"
+#include "tools/watched_estimator.h"
 
 namespace etendue {
 
@@ -18,6 +19,13 @@ constexpr double pilotShare = 0.15;
 constexpr std::uint32_t mostPilotSamples = 1u << 16;
 constexpr double mostSamples = 1 << 24;
 
+/// For a sample of a pixel on one core, about: `AgreementSettings::reckonsTime`. Of a lens that
+/// costs nothing.
+double reckonedSeconds(const Contender& contender) {
+    if (contender.kind == "bdpt" && !contender.technique) return 8e-6;
+    return contender.kind == "pt" ? 2e-6 : 4e-6;
+}
+
 double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -27,6 +35,7 @@ struct Pictures {
     std::vector<Picture> pixels;
     std::vector<LeftOutMeans> leftOut;
     BadSamples bad;
+    double largest = 0.0;  // see SampleSizes
     double seconds = 0.0;
 };
 
@@ -52,13 +61,18 @@ public:
         const auto a = render(tested, plan->tested);
         const auto b = a ? render(reference, plan->reference) : std::nullopt;
         if (!b) return {};
+        const auto sizes = [&](const Pictures& pictures, std::uint32_t samples) {
+            return SampleSizes{static_cast<double>(samples) * settings_.seeds, pictures.largest};
+        };
+        const Judgement judgement =
+            judgePictures(a->pixels, b->pixels, sizes(*a, plan->tested), sizes(*b, plan->reference),
+                          loaded_.film.width, settings_.tileSize, settings_.comparisons);
         Agreement result{sideOf(tested.name, plan->tested, *a),
-                         sideOf(reference.name, plan->reference, *b),
-                         comparePictures(a->pixels, b->pixels, loaded_.film.width,
-                                         settings_.tileSize, settings_.comparisons)};
+                         sideOf(reference.name, plan->reference, *b), judgement.comparison,
+                         judgement.testsInDoubt};
         const bool isBlack =
             summarize(meansOf(a->pixels)).mean == 0.0 && summarize(meansOf(b->pixels)).mean == 0.0;
-        result.verdict = verdictOf(result.comparison, settings_.bound, isBlack,
+        result.verdict = verdictOf(judgement, settings_.bound, isBlack,
                                    result.tested.bad.count + result.reference.bad.count > 0);
         result.seconds = secondsSince(start_);
         return result;
@@ -74,26 +88,38 @@ private:
         if (!b) return {};
         // Below half the bound, so that chance leaves room for the interval beside the bias.
         const double halfWidth = 0.45 * settings_.bound * mean;
-        const double left = settings_.seconds - secondsSince(start_);
+        const double left = settings_.reckonsTime ? (1.0 - pilotShare) * settings_.seconds
+                                                  : settings_.seconds - secondsSince(start_);
         return planSamples(*a, *b, settings_.seeds, halfWidth, left);
     }
 
     /// By as many samples as fit in half the time for pilots.
     std::optional<PictureCost> costOf(const Contestant& contestant, double& mean) {
         const auto begin = std::chrono::steady_clock::now();
+        double reckoned = 0.0;
         for (std::uint32_t samples = 1;; samples *= 2) {
             const std::uint64_t seed = nextSeed_;
             const auto pictures = render(contestant, samples);
             if (!pictures) return {};
             const Summary summary = summarize(meansOf(pictures->pixels));
             mean = std::max(mean, summary.mean);
+            const double took =
+                settings_.reckonsTime ? reckonedSeconds(contestant) * samples : pictures->seconds;
+            reckoned += took;
             // The next one would take twice as long.
-            const double spent = secondsSince(begin) + 2.0 * pictures->seconds;
+            const double spent =
+                (settings_.reckonsTime ? reckoned : secondsSince(begin)) + 2.0 * took;
             if (spent > 0.5 * pilotShare * settings_.seconds || samples >= mostPilotSamples)
                 return PictureCost{samples, summary.variance * samples,
-                                   std::max(pictures->seconds, 1e-9) / samples};
+                                   std::max(took, 1e-9) / samples};
             nextSeed_ = seed;  // Those before are forgotten.
         }
+    }
+
+    /// For a sample of each pixel of all pictures.
+    double reckonedSeconds(const Contestant& contestant) const {
+        return contestant.reckonedSeconds * settings_.seeds * loaded_.film.width *
+               loaded_.film.height;
     }
 
     std::optional<Pictures> render(const Contestant& contestant, std::uint32_t samples) {
@@ -102,14 +128,17 @@ private:
         Pictures result;
         result.pixels.resize(count);
         result.leftOut.resize(count);
+        std::vector<double> largest(count);
         std::vector<RenderResult> renders(count);
         std::atomic<bool> isOver{false};
         const std::uint64_t refusedBefore = loaded_.scene->refusedRays();
         parallelFor(count, settings_.threads, [&](std::size_t i) {
-            if (!isOver) renders[i] = renderOne(contestant, samples, nextSeed_ + i, i, result);
+            if (!isOver)
+                renders[i] = renderOne(contestant, samples, nextSeed_ + i, i, result, largest[i]);
             if (renders[i].wasInterrupted) isOver = true;
         });
         if (isOver) return {};
+        result.largest = *std::max_element(largest.begin(), largest.end());
         for (std::size_t i = 0; i < count; ++i) {
             if (renders[i].badSampleCount == 0) continue;
             if (result.bad.count == 0) {
@@ -125,20 +154,22 @@ private:
     }
 
     RenderResult renderOne(const Contestant& contestant, std::uint32_t samples, std::uint64_t seed,
-                           std::size_t i, Pictures& pictures) {
+                           std::size_t i, Pictures& pictures, double& largest) {
         const FilmSettings& frame = loaded_.film;
         Film film({frame.width, frame.height, 0, 0, frame.width, frame.height}, {}, frame.color);
         const std::unique_ptr<CommonPaths> estimator = contestant.make();
         RenderSettings settings;
         settings.samples = samples;
         settings.seed = seed;
-        settings.sampler = loaded_.sampler;
+        settings.sampler = settings_.sampler.value_or(loaded_.sampler);
+        const WatchedEstimator watched(*estimator, loaded_);
         const RenderResult result =
-            etendue::render(*loaded_.scene, *loaded_.camera, *estimator, filter_, film, settings,
+            etendue::render(*loaded_.scene, *loaded_.camera, watched, filter_, film, settings,
                             [&](const RenderProgress&) {
                                 const std::lock_guard lock(progress_);
                                 return !goOn_ || goOn_(secondsSince(start_));
                             });
+        largest = watched.largest();
         pictures.pixels[i] = film.channels().front().pixels;
         pictures.leftOut[i] =
             estimator->leftOut(samples, pictures.pixels[i].size() / 3, frame.color);
@@ -195,17 +226,16 @@ std::optional<Agreement> comparePicturesOf(const LoadedScene& loaded, const Cont
     return Comparison(loaded, settings, goOn).compare(tested, reference);
 }
 
-std::optional<Agreement> compareEstimators(const LoadedScene& loaded, const std::string& tested,
-                                           const std::string& reference,
+std::optional<Agreement> compareEstimators(const LoadedScene& loaded, const Contender& tested,
+                                           const Contender& reference,
                                            const AgreementSettings& settings,
                                            const std::function<bool(double)>& goOn) {
-    const auto contestant = [&](const std::string& kind, const std::string& other) {
-        EstimatorSettings estimator = loaded.estimator;
-        estimator.kind = kind;
-        estimator.techniques = {};
-        const Scene& scene = *loaded.scene;
+    const auto contestant = [&](const Contender& self, const Contender& other) {
+        const CommonPathsSettings paths{loaded.estimator, self, other, settings.keepsByChance};
         return Contestant{
-            kind, [&scene, estimator, other] { return makeCommonPaths(scene, estimator, other); }};
+            nameOf(self),
+            [&loaded, paths] { return makeCommonPaths(*loaded.scene, *loaded.camera, paths); },
+            reckonedSeconds(self) * settings.reckonedLensCost};
     };
     return comparePicturesOf(loaded, contestant(tested, reference), contestant(reference, tested),
                              settings, goOn);
@@ -230,11 +260,12 @@ SamplePlan planSamples(PictureCost tested, PictureCost reference, int seeds, dou
     return {samples(tested), samples(reference)};
 }
 
-Verdict verdictOf(const PictureComparison& comparison, double bound, bool isBlack,
-                  bool hasBadSamples) {
-    if (hasBadSamples || !comparison.agree()) return Verdict::differ;
+Verdict verdictOf(const Judgement& judgement, double bound, bool isBlack, bool hasBadSamples) {
+    if (hasBadSamples || !judgement.comparison.agree()) return Verdict::differ;
     if (isBlack) return Verdict::nothingCommon;
-    return comparison.isEquivalent(bound) ? Verdict::agree : Verdict::tooNoisy;
+    return judgement.comparison.isEquivalent(bound) && judgement.testsInDoubt == 0
+               ? Verdict::agree
+               : Verdict::tooNoisy;
 }
 
 }  // namespace etendue

@@ -10,15 +10,19 @@
 
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
-#include "statistics/picture_comparison.h"
+#include "tools/agreement_judge.h"
 #include "tools/path_classes.h"
 
 namespace etendue {
 
 struct AgreementSettings {
-    int seeds = 16;               // pictures of each estimator
-    std::optional<int> samples;   // per pixel of each picture; else as many as time allows
-    double seconds = 20.0;        // for one comparison, about
+    int seeds = 16;                 // pictures of each estimator
+    std::optional<int> samples;     // per pixel of each picture; else as many as time allows
+    double seconds = 20.0;          // for one comparison, about
+    bool reckonsTime = false;       // by a table and not by the clock: always the same samples
+    double reckonedLensCost = 1.0;  // then: how much longer samples take through this lens
+    std::optional<Sampler> sampler = Sampler::sobol;  // none: the scene's
+    bool keepsByChance = false;   // compares what path tracing meets only by chance, too
     double bound = 0.002;         // of the relative bias
     int tileSize = 16;            // pixels
     std::size_t comparisons = 1;  // that share the chance of 1 % of any false alarm
@@ -32,7 +36,8 @@ std::uint64_t agreementSeeds(const AgreementSettings& settings);
 enum class Verdict {
     agree,          // no test rejects, and the bias is below the bound with 99 % confidence
     differ,         // a test rejects, or samples had to be left out
-    tooNoisy,       // no test rejects, but the interval reaches beyond the bound
+    tooNoisy,       // no test rejects, but the interval reaches beyond the bound, or a tile's
+                    // samples are too few to test it
     nothingCommon,  // both pictures are black
 };
 std::string nameOf(Verdict verdict);
@@ -55,6 +60,7 @@ struct AgreementSide {
 struct Agreement {
     AgreementSide tested, reference;
     PictureComparison comparison;
+    std::size_t testsInDoubt = 0;  // see Judgement
     Verdict verdict = Verdict::nothingCommon;
     double seconds = 0.0;
 };
@@ -63,6 +69,7 @@ struct Agreement {
 struct Contestant {
     std::string name;
     std::function<std::unique_ptr<CommonPaths>()> make;
+    double reckonedSeconds = 1e-6;  // for a sample of a pixel
 };
 
 /// Renders the scene by both and compares. `goOn`: hears from any thread, one at a time, the
@@ -72,9 +79,9 @@ std::optional<Agreement> comparePicturesOf(const LoadedScene& loaded, const Cont
                                            const AgreementSettings& settings,
                                            const std::function<bool(double)>& goOn);
 
-/// The same for two kinds of estimator, on the paths that both can make.
-std::optional<Agreement> compareEstimators(const LoadedScene& loaded, const std::string& tested,
-                                           const std::string& reference,
+/// The same for two estimators, on the paths that both make.
+std::optional<Agreement> compareEstimators(const LoadedScene& loaded, const Contender& tested,
+                                           const Contender& reference,
                                            const AgreementSettings& settings,
                                            const std::function<bool(double)>& goOn);
 
@@ -94,7 +101,6 @@ struct SamplePlan {
 SamplePlan planSamples(PictureCost tested, PictureCost reference, int seeds, double halfWidth,
                        double seconds);
 
-Verdict verdictOf(const PictureComparison& comparison, double bound, bool isBlack,
-                  bool hasBadSamples);
+Verdict verdictOf(const Judgement& judgement, double bound, bool isBlack, bool hasBadSamples);
 
 }  // namespace etendue

@@ -13,10 +13,16 @@ namespace {
 
 constexpr double perCent = 100.0;
 
+/// Of a row without a result.
+std::string wordFor(const AgreementRow& row) {
+    if (row.isIncomplete) return "not complete";
+    return row.failure.empty() ? "not reached" : "not done";
+}
+
 std::vector<std::string> tableRow(const AgreementRow& row) {
     std::vector<std::string> cells{row.scene, row.camera, row.estimator, row.reference};
     if (!row.result) {
-        const std::string word = row.failure.empty() ? "not reached" : "not done";
+        const std::string word = wordFor(row);
         cells.insert(cells.end(), {"", "", "", word, "", "", ""});
         return cells;
     }
@@ -79,7 +85,7 @@ Json jsonOf(const AgreementRow& row) {
     if (!row.result) {
         object.add("estimator", row.estimator);
         object.add("reference", row.reference);
-        object.add("verdict", row.failure.empty() ? "not reached" : "not done");
+        object.add("verdict", wordFor(row));
         if (!row.failure.empty()) object.add("failure", row.failure);
         return object;
     }
@@ -89,6 +95,7 @@ Json jsonOf(const AgreementRow& row) {
     object.add("verdict", nameOf(r.verdict));
     object.add("bias_percent", perCent * r.comparison.relativeBias);
     object.add("half_width_percent", perCent * r.comparison.relativeBiasHalfWidth);
+    object.add("tests_in_doubt", r.testsInDoubt);
     object.add("smallest_p", r.comparison.smallestP);
     object.add("level", r.comparison.level);
     object.add("seconds", r.seconds);
@@ -98,7 +105,8 @@ Json jsonOf(const AgreementRow& row) {
 }  // namespace
 
 std::string titleOf(const AgreementRow& row) {
-    return fmt::format("{}, {}, {}", row.scene, row.camera, row.estimator);
+    return fmt::format("{}, {}, {} against {}", row.scene, row.camera, row.estimator,
+                       row.reference);
 }
 
 std::string outcomeOf(const AgreementRow& row) {
@@ -115,21 +123,29 @@ std::string agreementText(const std::vector<AgreementRow>& rows,
     std::vector<std::vector<std::string>> table{{"scene", "camera", "tested", "against", "bias %",
                                                  "± %", "smallest p", "verdict", "samples",
                                                  "against", "seconds"}};
-    std::string leftOut, defects, failures;
+    std::string leftOut, inDoubt, defects, failures;
     double level = 0.0;
     for (const AgreementRow& row : rows) {
         table.push_back(tableRow(row));
         if (!row.failure.empty()) failures += fmt::format("  {}: {}\n", titleOf(row), row.failure);
         if (!row.result) continue;
         level = row.result->comparison.level;
+        if (row.result->testsInDoubt > 0)
+            inDoubt += fmt::format("  {}: {}\n", titleOf(row), row.result->testsInDoubt);
         for (const AgreementSide* side : {&row.result->tested, &row.result->reference}) {
             appendLeftOut(row, *side, leftOut);
             appendDefects(row, *side, defects);
         }
     }
     std::string text = alignedTable(table, "llllrrrlrrr");
+    appendSection(
+        text,
+        "Left out of a comparison, since one of the two cannot make it or meets it only by chance:",
+        leftOut);
     appendSection(text,
-                  "Left out of a comparison, since the other estimator cannot make it:", leftOut);
+                  "Tests that reject, unless the darker side has just missed its brightest "
+                  "samples, which are too bright to tell:",
+                  inDoubt);
     appendSection(text, "Defects:", defects);
     appendSection(text, "Not done:", failures);
     text += fmt::format(
@@ -149,13 +165,20 @@ Json agreementJson(const std::vector<AgreementRow>& rows, const AgreementSetting
                          {"comparisons", comparisons}});
 }
 
-ExitCode exitCodeOf(const std::vector<AgreementRow>& rows) {
-    const auto any = [&](const auto& predicate) { return std::ranges::any_of(rows, predicate); };
-    if (any([](const AgreementRow& r) { return r.result && r.result->verdict == Verdict::differ; }))
-        return ExitCode::failure;
-    if (any([](const AgreementRow& r) { return !r.failure.empty(); })) return ExitCode::badInput;
-    if (any([](const AgreementRow& r) { return !r.result; })) return ExitCode::stoppedEarly;
-    return ExitCode::success;
+ExitCode exitCodeOf(const std::vector<AgreementRow>& rows, int mustAgree) {
+    const auto count = [&](const auto& predicate) {
+        return std::ranges::count_if(rows, predicate);
+    };
+    const auto countOf = [&](Verdict verdict) {
+        return count(
+            [=](const AgreementRow& r) { return r.result && r.result->verdict == verdict; });
+    };
+    if (countOf(Verdict::differ) > 0) return ExitCode::failure;
+    if (count([](const AgreementRow& r) { return !r.failure.empty(); }) > 0)
+        return ExitCode::badInput;
+    if (count([](const AgreementRow& r) { return !r.result && !r.isIncomplete; }) > 0)
+        return ExitCode::stoppedEarly;
+    return countOf(Verdict::agree) < mustAgree ? ExitCode::failure : ExitCode::success;
 }
 
 }  // namespace etendue

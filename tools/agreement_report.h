@@ -9,12 +9,13 @@ namespace etendue {
 
 /// One comparison, or why there is none.
 struct AgreementRow {
-    std::string scene, camera, estimator, reference;
-    std::optional<Agreement> result;
-    std::string failure;  // why it was not done; empty: it was, or it was not reached
+    std::string scene, camera, estimator, reference;  // both as nameOf(Contender)
+    std::optional<Agreement> result{};
+    std::string failure{};      // why it was not done; empty: it was, or it was not reached
+    bool isIncomplete = false;  // a technique that does not make all of the light here
 };
 
-/// "cornell-box, thin-lens, lt".
+/// "cornell-box, thin-lens, lt against pt".
 std::string titleOf(const AgreementRow& row);
 /// "agree, +0.012 ± 0.150 %".
 std::string outcomeOf(const AgreementRow& row);
@@ -23,8 +24,8 @@ std::string outcomeOf(const AgreementRow& row);
 std::string agreementText(const std::vector<AgreementRow>& rows, const AgreementSettings& settings);
 Json agreementJson(const std::vector<AgreementRow>& rows, const AgreementSettings& settings);
 
-/// Failure if any row differs, else bad input if any was not done, else stopped early if some are
-/// missing.
-ExitCode exitCodeOf(const std::vector<AgreementRow>& rows);
+/// Failure if any row differs or fewer than `mustAgree` agree, else bad input if any was not done,
+/// else stopped early if some are missing.
+ExitCode exitCodeOf(const std::vector<AgreementRow>& rows, int mustAgree = 0);
 
 }  // namespace etendue

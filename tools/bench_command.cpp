@@ -18,6 +18,12 @@ namespace {
 struct NamedFile {
     std::string name;
     std::filesystem::path file;  // empty: the scene's own camera
+    bool isDispersive = false;
+};
+
+/// Which estimator is compared with which.
+struct Pair {
+    Contender tested, reference;
 };
 
 std::vector<std::string> sceneNamesIn(const std::filesystem::path& folder) {
@@ -65,6 +71,11 @@ NamedFile sceneCalled(const std::string& name, const std::filesystem::path& fold
 }
 
 NamedFile cameraCalled(const std::string& name, const std::filesystem::path& folder) {
+    constexpr std::string_view suffix = "+dispersion";
+    if (name.ends_with(suffix)) {
+        NamedFile camera = cameraCalled(name.substr(0, name.size() - suffix.size()), folder);
+        return {name, camera.file, true};
+    }
     if (name == "own") return {name, {}};
     const std::filesystem::path path = name;
     if (isFile(path)) return {path.stem().string(), path};
@@ -85,11 +96,38 @@ std::vector<NamedFile> scenesOf(const AgreementCommand& command) {
     return scenes;
 }
 
+/// Single techniques are held against path tracing, which shares no code with them; but it meets
+/// the light itself only by chance if that is small.
+std::vector<Pair> techniquesUpTo(int edges) {
+    std::vector<Pair> pairs;
+    for (int k = 1; k <= edges; ++k)
+        for (int s = 0; s <= k; ++s)
+            pairs.push_back({{"bdpt", Technique{s, k + 1 - s}}, {k == 1 ? "bdpt" : "pt", {}}});
+    return pairs;
+}
+
+std::vector<Pair> pairsOf(const AgreementCommand& command) {
+    if (command.techniqueEdges > 0) return techniquesUpTo(command.techniqueEdges);
+    const bool isDefault = command.estimators.empty() && command.reference.empty();
+    if (isDefault) return {{{"lt", {}}, {}}, {{"bdpt", {}}, {}}, {{"lt", {}}, {"bdpt", {}}}};
+    const std::vector<std::string> both{"lt", "bdpt"};
+    const std::string reference = command.reference.empty() ? "pt" : command.reference;
+    std::vector<Pair> pairs;
+    for (const std::string& name : command.estimators.empty() ? both : command.estimators)
+        pairs.push_back({parseContender(name).value(), parseContender(reference).value()});
+    for (const auto& [tested, other] : pairs)
+        if (tested.technique && other.technique && !isAsLong(*tested.technique, *other.technique))
+            throw InputError(fmt::format("{} and {} make paths of different lengths",
+                                         nameOf(tested), nameOf(other)),
+                             ExitCode::usage);
+    return pairs;
+}
+
 /// A run over the matrix.
 class AgreementRun {
 public:
     explicit AgreementRun(const AgreementCommand& command)
-        : command_(command), scenes_(scenesOf(command)) {
+        : command_(command), scenes_(scenesOf(command)), pairs_(pairsOf(command)) {
         for (const std::string& name : command.cameras)
             cameras_.push_back(cameraCalled(name, command.folder));
         settings_.seeds = command.seeds;
@@ -97,7 +135,11 @@ public:
         settings_.seconds = command.seconds;
         settings_.bound = 0.01 * command.boundPercent;
         settings_.threads = command.threads.value_or(hardwareThreads());
-        settings_.comparisons = scenes_.size() * cameras_.size() * command.estimators.size();
+        settings_.comparisons = scenes_.size() * cameras_.size() * pairs_.size();
+        settings_.reckonsTime = command.reckonsTime;
+        settings_.keepsByChance = command.keepsByChance;
+        if (command.sampler == "independent") settings_.sampler = Sampler::independent;
+        if (command.sampler == "scene") settings_.sampler.reset();
         settings_.firstSeed = command.firstSeed;
     }
 
@@ -124,20 +166,31 @@ private:
             failure = error.what();
             loaded.reset();
         }
-        for (const std::string& estimator : command_.estimators) {
-            AgreementRow row{scene.name, camera.name, estimator, command_.reference, {}, failure};
-            if (loaded && !isStopRequested()) {
-                row.result = compareEstimators(
-                    *loaded, estimator, command_.reference, settings_, [&](double seconds) {
-                        bar.update(titleOf(row), std::min(1.0, seconds / settings_.seconds));
-                        return !isStopRequested();
-                    });
-            }
+        for (const Pair& pair : pairs_) {
+            AgreementRow row{scene.name, camera.name, nameOf(pair.tested), nameOf(pair.reference),
+                             {},         failure};
+            if (loaded) compare(*loaded, pair, row, bar);
             settings_.firstSeed += agreementSeeds(settings_);
-            if (row.result || !failure.empty())
+            if (row.result || !row.failure.empty())
                 bar.finishJob(fmt::format("{}: {}", titleOf(row), outcomeOf(row)));
             rows_.push_back(row);
         }
+    }
+
+    void compare(const LoadedScene& loaded, const Pair& pair, AgreementRow& row,
+                 JobBar& bar) const {
+        if (isStopRequested()) return;
+        for (const Contender* contender : {&pair.tested, &pair.reference})
+            if (contender->technique && contender->technique->s == 0 &&
+                hasLightWithoutExtent(*loaded.scene)) {
+                row.isIncomplete = true;
+                return;
+            }
+        row.result =
+            compareEstimators(loaded, pair.tested, pair.reference, settings_, [&](double seconds) {
+                bar.update(titleOf(row), std::min(1.0, seconds / settings_.seconds));
+                return !isStopRequested();
+            });
     }
 
     LoadedScene load(const NamedFile& scene, const NamedFile& camera, const std::string& title,
@@ -152,11 +205,15 @@ private:
             bar.update(fmt::format("{}: {}", title, stage), 0.0);
         };
         options.camera = camera.file;
+        LoadedScene loaded = loadScene(scene.file, options);
+        if (camera.isDispersive || !loaded.camera->settings().isDispersive) return loaded;
+        options.overrides.push_back("camera.dispersion=false");
         return loadScene(scene.file, options);
     }
 
     const AgreementCommand& command_;
     std::vector<NamedFile> scenes_, cameras_;
+    std::vector<Pair> pairs_;
     AgreementSettings settings_;
     std::vector<AgreementRow> rows_;
 };
@@ -171,7 +228,7 @@ ExitCode runAgreement(const AgreementCommand& command) {
         fmt::print("{}\n", agreementJson(agreement.rows(), agreement.settings()).text());
     else
         fmt::print("{}", agreementText(agreement.rows(), agreement.settings()));
-    return exitCodeOf(agreement.rows());
+    return exitCodeOf(agreement.rows(), command.mustAgree);
 }
 
 }  // namespace etendue

@@ -12,6 +12,7 @@
 
 #include "renderer/estimator.h"
 #include "tools/bench_command.h"
+#include "tools/contender.h"
 #include "tools/lens_command.h"
 #include "tools/option_checks.h"
 #include "tools/render_command.h"
@@ -174,7 +175,11 @@ void addReplay(CLI::App& app, ReplayCommand& c) {
 }
 
 void addAgreement(CLI::App& bench, AgreementCommand& c) {
-    const CLI::Validator kinds = CLI::IsMember(estimatorKinds()).description("");
+    const CLI::Validator contenders(
+        [](const std::string& text) {
+            return parseContender(text) ? "" : fmt::format("no estimator is called \"{}\"", text);
+        },
+        "");
     CLI::App* agreement = bench.add_subcommand(
         "agreement",
         "Test whether the estimators make one picture, scene by scene, camera by "
@@ -187,18 +192,34 @@ void addAgreement(CLI::App& bench, AgreementCommand& c) {
     agreement
         ->add_option("--cameras", c.cameras,
                      "Names in cameras/, files, own: the scene's; default: pinhole,thin-lens,"
-                     "double-gauss,double-gauss-traced,fisheye,anamorphic")
+                     "double-gauss,double-gauss+dispersion,double-gauss-traced,fisheye,"
+                     "anamorphic")
         ->delimiter(',')
         ->allow_extra_args(false)  // scenes may follow
         ->type_name("LIST");
-    agreement->add_option("--estimators", c.estimators, "To test; default: lt,bdpt")
+    agreement
+        ->add_option("--estimators", c.estimators,
+                     "To test, or techniques such as bdpt:s2t1; default: lt,bdpt, and lt against "
+                     "bdpt")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(kinds)
+        ->check(contenders)
         ->type_name("LIST");
     agreement->add_option("--against", c.reference, "By which estimator; default: pt")
-        ->check(kinds)
+        ->check(contenders)
         ->type_name("NAME");
+    agreement
+        ->add_option("--techniques", c.techniqueEdges,
+                     "Test each technique of bdpt alone, of paths of up to so many edges")
+        ->check(CLI::Range(1, 16).description(""))
+        ->type_name("N");
+    agreement
+        ->add_option("--sampler", c.sampler,
+                     "sobol, independent, or scene: its own; default: sobol")
+        ->check(CLI::IsMember({"sobol", "independent", "scene"}).description(""))
+        ->type_name("NAME");
+    agreement->add_flag("--by-chance", c.keepsByChance,
+                        "Compare what an estimator meets only by chance, too");
     agreement->add_option("--seeds", c.seeds, "Pictures of either estimator; default: 16")
         ->check(CLI::Range(2, 10000).description(""))
         ->type_name("N");
@@ -210,6 +231,13 @@ void addAgreement(CLI::App& bench, AgreementCommand& c) {
     agreement->add_option("--time", c.seconds, "At most about so long a comparison; default: 20")
         ->check(positiveNumber())
         ->type_name("SECONDS");
+    agreement->add_flag("--reckon", c.reckonsTime,
+                        "Reckon the time by a table: the same samples in every run");
+    agreement
+        ->add_option("--must-agree", c.mustAgree,
+                     "Fail if fewer comparisons are within the bound; default: 0")
+        ->check(CLI::Range(0, 1 << 24).description(""))
+        ->type_name("N");
     agreement
         ->add_option("--bound", c.boundPercent, "Of the bias that counts as none; default: 0.2")
         ->check(positiveNumber())

@@ -6,101 +6,155 @@
 #include <atomic>
 #include <stdexcept>
 
-#include "tools/sample_path.h"
+#include "tools/path_shape.h"
 
 namespace etendue {
 
 namespace {
 
-struct ClassRow {
-    const char* description;
-    std::vector<std::string> blindEstimators;
+const char* descriptionOf(PathClass pathClass) {
+    static const std::array<const char*, pathClassCount> descriptions{{
+        "what is seen first in a mirror, in smooth glass or in a smooth coat",
+        "points, spots and suns, seen directly or with a mirror or smooth glass next to them",
+        "where connecting to the lens finds another film point, or none",
+        "met only by chance: caustics of lamps, by mirrors, smooth glass or smooth coats",
+        "met only by chance: small lamps, seen directly or in mirrors and smooth glass alone",
+        "a mirror, smooth glass or a smooth coat where the technique joins its walks",
+    }};
+    return descriptions[static_cast<std::size_t>(pathClass)];
+}
+
+/// Of the light at index, from where the camera stands: the mean of 1 / density over its samples.
+double solidAngleOf(const Light& light, Vec3 from) {
+    constexpr int across = 16;
+    double sum = 0.0;
+    for (int i = 0; i < across * across; ++i) {
+        const float u = (static_cast<float>(i % across) + 0.5f) / across;
+        const float v = (static_cast<float>(i / across) + 0.5f) / across;
+        const auto sample = light.sample(from, {u, v});
+        if (sample && sample->pdfSolidAngle > 0.0f)
+            sum += 1.0 / static_cast<double>(sample->pdfSolidAngle);
+    }
+    return sum / (across * across);
+}
+
+/// What the classes ask of the scene.
+struct SceneLights {
+    SceneLights(const Scene& scene, const Camera& camera) : hasDirac(hasLightWithoutExtent(scene)) {
+        for (int i = 0; i < static_cast<int>(scene.lights().size()); ++i) {
+            const Light& light = scene.lights()[i];
+            isLamp.push_back(!light.isInfinite());
+            isSmallLamp.push_back(isLamp.back() &&
+                                  solidAngleOf(light, camera.position()) < smallLampSolidAngle);
+        }
+    }
+
+    static bool any(const std::vector<bool>& of) {
+        return std::find(of.begin(), of.end(), true) != of.end();
+    }
+    /// `of` the light that the path ends on, if it has extent.
+    static bool isEnd(const std::vector<bool>& of, const PathShape& path) {
+        const auto light = path.light();
+        return light && !light->isDirac && light->index >= 0 &&
+               of[static_cast<std::size_t>(light->index)];
+    }
+
+    bool hasDirac;
+    std::vector<bool> isLamp, isSmallLamp;
 };
 
-const ClassRow& rowOf(PathClass pathClass) {
-    static const std::array<ClassRow, pathClassCount> rows{{
-        {"what is seen first in a mirror, in smooth glass or in a smooth coat", {"lt"}},
-        {"points, spots and suns, seen directly or with a mirror or smooth glass next to them",
-         {"pt"}},
-        {"where connecting to the lens finds another film point, or none", {"lt"}},
-    }};
-    return rows[static_cast<std::size_t>(pathClass)];
-}
-
-/// The camera's walk scattered at its first vertex as a mirror does. A connection there (t = 2)
-/// takes part with the continuous lobes.
-bool isMirrorFirst(Technique technique, const CameraSubpath& path) {
-    return technique.t >= 3 && !path.vertices[1].density.isConnectable;
-}
-
-/// The light's walk began at a light without extent, and went to the lens at once or scattered at
-/// its first vertex as a mirror does.
-bool isMirroredPoint(Technique technique, const SamplePath& path) {
-    if (technique.s == 0 || path.lightPaths.empty() || !path.lightPaths.front().isDirac)
-        return false;
-    if (technique == Technique{1, 1}) return true;
-    return technique.s >= 3 && !path.lightPaths.front().vertices[1].density.isConnectable;
-}
-
-bool isLostByLens(Technique technique, const CameraSubpath& path) {
-    return technique.t >= 2 && !path.vertices.front().density.isConnectable;
-}
-
 /// A path may belong to several classes.
-bool belongsTo(PathClass pathClass, Technique technique, const SamplePath& path) {
+bool belongsTo(PathClass pathClass, const PathShape& path, const SceneLights& lights,
+               const std::vector<Technique>& alone) {
+    const int last = path.edges() - 1;  // the vertex before the light
     switch (pathClass) {
         case PathClass::mirrorFirst:
-            return isMirrorFirst(technique, path.cameraPath);
+            return path.isMirrorIfAny(1);
         case PathClass::mirroredPoint:
-            return isMirroredPoint(technique, path);
+            return (last == 0 || path.isMirror(last)) && path.light() && path.light()->isDirac;
         case PathClass::lostByLens:
-            return isLostByLens(technique, path.cameraPath);
-    }
-    return false;
-}
-
-bool hasLightWithoutExtent(const Scene& scene) {
-    for (int i = 0; i < static_cast<int>(scene.lights().size()); ++i) {
-        const auto ray = scene.lights()[i].emit({0.5f, 0.5f}, {0.5f, 0.5f});
-        if (!ray || ray->isDiracPosition || ray->isDiracDirection) return true;
+            return !path.isFoundByLens();
+        case PathClass::caustic:
+            return path.isMirrorIfAny(last) && !path.isMirrorsAlone() &&
+                   SceneLights::isEnd(lights.isLamp, path);
+        case PathClass::smallLamp:
+            return path.isMirrorsAlone() && SceneLights::isEnd(lights.isSmallLamp, path);
+        case PathClass::notJoined:
+            return std::any_of(alone.begin(), alone.end(), [&](Technique joined) {
+                return joined.s > 0 &&
+                       (path.isMirrorIfAny(joined.t - 1) || path.isMirrorIfAny(joined.t));
+            });
     }
     return false;
 }
 
 /// Not whether it has: samples are not traced twice where there is nothing to look for.
-bool mayHave(const Scene& scene, PathClass pathClass) {
-    return pathClass != PathClass::mirroredPoint || hasLightWithoutExtent(scene);
+bool mayHave(const SceneLights& lights, PathClass pathClass) {
+    switch (pathClass) {
+        case PathClass::mirroredPoint:
+            return lights.hasDirac;
+        case PathClass::caustic:
+            return SceneLights::any(lights.isLamp);
+        case PathClass::smallLamp:
+            return SceneLights::any(lights.isSmallLamp);
+        default:
+            return true;
+    }
+}
+
+/// Paths of one technique's length, of that technique alone if it is the contender's own.
+EstimatorSettings settingsOf(const CommonPathsSettings& s) {
+    EstimatorSettings result = s.estimator;
+    result.kind = s.self.kind;
+    result.techniques = {};
+    result.lightPaths = 1;
+    for (const Contender* contender : {&s.self, &s.other})
+        if (const auto& technique = contender->technique)
+            result.maxDepth = std::min(result.maxDepth, technique->s + technique->t - 1);
+    if (s.self.technique) result.techniques = *TechniqueSet::parse(nameOf(*s.self.technique));
+    return result;
 }
 
 class CommonPathsOf final : public CommonPaths {
 public:
-    CommonPathsOf(const Scene& scene, const EstimatorSettings& settings, const std::string& other)
-        : settings_(withOneLightPath(settings)), estimator_(makeEstimator(settings_)) {
+    CommonPathsOf(const Scene& scene, const Camera& camera, const CommonPathsSettings& settings)
+        : lights_(scene, camera),
+          settings_(settingsOf(settings)),
+          estimator_(makeEstimator(settings_)) {
+        for (const Contender* contender : {&settings.self, &settings.other})
+            if (contender->technique) alone_.push_back(*contender->technique);
         for (std::size_t i = 0; i < pathClassCount; ++i) {
             const auto pathClass = static_cast<PathClass>(i);
-            isLeftOut_[i] = mayHave(scene, pathClass) && canMake(settings.kind, pathClass) &&
-                            !canMake(other, pathClass);
-            leavesOut_ |= isLeftOut_[i];
+            const bool isByChance =
+                !settings.keepsByChance && (makesByChance(settings.self, pathClass) ||
+                                            makesByChance(settings.other, pathClass));
+            isLeftOut_[i] = mayHave(lights_, pathClass) && canMake(settings.self, pathClass) &&
+                            (isByChance || !canMake(settings.other, pathClass));
+            looksAtPaths_ |= isLeftOut_[i];
         }
+        looksAtPaths_ |= !alone_.empty();
     }
 
     int lightPathsPerSample() const override { return estimator_->lightPathsPerSample(); }
 
     void takeSample(const View& view, SampleId id, SampleRequest request,
                     Sample& result) const override {
-        if (!leavesOut_) {
+        if (!looksAtPaths_) {
             estimator_->takeSample(view, id, request, result);
             return;
         }
         static thread_local SamplePath path;
         retraceSample(view, *estimator_, settings_, id, path);
-        if (isLeftOut_[static_cast<std::size_t>(PathClass::lostByLens)])
+        // Where light paths are joined to the camera's that has been asked.
+        if (isLeftOut_[static_cast<std::size_t>(PathClass::lostByLens)] && settings_.kind == "pt" &&
+            !path.contributions.empty())
             markReachability(view, path);
-        if (id.sample == 0 && settings_.kind == "pt") holdAgainstEstimator(view, id, path);
+        if (id.sample == 0) holdAgainstEstimator(view, id, path);
         result.contributions.clear();
         result.firstHit.reset();
         for (const Contribution& c : path.contributions) {
-            const auto pathClass = classToLeaveOut(c.technique, path);
+            if (!alone_.empty() && !isAsLong(c.technique, alone_.front())) continue;
+            const auto pathClass = classToLeaveOut({c.technique, path});
             // What the film refuses is for the render to report.
             if (pathClass && isUsable(c.value * c.weight))
                 count(*pathClass, c);
@@ -127,26 +181,26 @@ public:
 private:
     using Sums = std::array<std::atomic<double>, 3>;
 
-    static EstimatorSettings withOneLightPath(EstimatorSettings settings) {
-        settings.lightPaths = 1;
-        return settings;
-    }
-
     void holdAgainstEstimator(const View& view, SampleId id, const SamplePath& path) const {
         Sample sample;
         estimator_->takeSample(view, id, {}, sample);
-        Spectrum sum;
-        for (const Contribution& c : sample.contributions) sum += c.value * c.weight;
-        if (isFinite(sum) && sum != path.ownPixel)
+        Spectrum own, splatted, splattedAgain;
+        for (const Contribution& c : sample.contributions)
+            (c.isSplat ? splatted : own) += c.value * c.weight;
+        for (const Contribution& c : path.contributions)
+            if (c.isSplat) splattedAgain += c.value * c.weight;
+        if (isFinite(own) && isFinite(splatted) &&
+            (own != path.ownPixel || splatted != splattedAgain))
             throw std::logic_error(fmt::format(
                 "seed {} pixel {},{} sample {}: a path traced again is not the estimator's",
                 id.seed, id.x, id.y, id.sample));
     }
 
     /// The first that is to be left out and that the path belongs to.
-    std::optional<std::size_t> classToLeaveOut(Technique technique, const SamplePath& path) const {
+    std::optional<std::size_t> classToLeaveOut(const PathShape& path) const {
         for (std::size_t i = 0; i < pathClassCount; ++i)
-            if (isLeftOut_[i] && belongsTo(static_cast<PathClass>(i), technique, path)) return i;
+            if (isLeftOut_[i] && belongsTo(static_cast<PathClass>(i), path, lights_, alone_))
+                return i;
         return {};
     }
 
@@ -156,25 +210,49 @@ private:
         for (std::size_t i = 0; i < 3; ++i) sums[i] += double{value[static_cast<int>(i)]};
     }
 
+    SceneLights lights_;
     EstimatorSettings settings_;
     std::unique_ptr<Estimator> estimator_;
+    std::vector<Technique> alone_;  // of one length, to which both keep
     std::array<bool, pathClassCount> isLeftOut_{};
-    bool leavesOut_ = false;
+    bool looksAtPaths_ = false;
     mutable std::array<Sums, pathClassCount> own_{}, splatted_{};
 };
 
 }  // namespace
 
-std::string describe(PathClass pathClass) { return rowOf(pathClass).description; }
+std::string describe(PathClass pathClass) { return descriptionOf(pathClass); }
 
-bool canMake(const std::string& estimatorKind, PathClass pathClass) {
-    const auto& blind = rowOf(pathClass).blindEstimators;
-    return std::find(blind.begin(), blind.end(), estimatorKind) == blind.end();
+bool canMake(const Contender& contender, PathClass pathClass) {
+    switch (pathClass) {
+        case PathClass::mirrorFirst:
+        case PathClass::lostByLens:
+            return !contender.isLightTracing();
+        case PathClass::mirroredPoint:
+            return contender.kind != "pt";
+        case PathClass::notJoined:
+            return !contender.technique;
+        default:
+            return true;
+    }
 }
 
-std::unique_ptr<CommonPaths> makeCommonPaths(const Scene& scene, const EstimatorSettings& settings,
-                                             const std::string& other) {
-    return std::make_unique<CommonPathsOf>(scene, settings, other);
+bool makesByChance(const Contender& contender, PathClass pathClass) {
+    return contender.meetsLights() &&
+           (pathClass == PathClass::caustic || pathClass == PathClass::smallLamp);
+}
+
+bool hasLightWithoutExtent(const Scene& scene) {
+    for (int i = 0; i < static_cast<int>(scene.lights().size()); ++i) {
+        const auto ray = scene.lights()[i].emit({0.5f, 0.5f}, {0.5f, 0.5f});
+        if (!ray || ray->isDiracPosition || ray->isDiracDirection) return true;
+    }
+    return false;
+}
+
+std::unique_ptr<CommonPaths> makeCommonPaths(const Scene& scene, const Camera& camera,
+                                             const CommonPathsSettings& settings) {
+    return std::make_unique<CommonPathsOf>(scene, camera, settings);
 }
 
 }  // namespace etendue

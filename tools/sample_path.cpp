@@ -179,26 +179,37 @@ void retracePathTracing(const View& view, const EstimatorSettings& settings, Sam
     if (result.camera->ray) RecordedPathTracing(view, settings, result).trace();
 }
 
-void retraceLightPaths(const View& view, const EstimatorSettings& settings, SampleId id,
-                       int lightPaths, SamplePath& result) {
-    const Wavelengths wavelengths = drawWavelengths(view, id).wavelengths;
+/// What makeEstimator makes of light tracing and bidirectional path tracing, without forgetting.
+void retraceBidirectional(const View& view, const EstimatorSettings& settings, SampleId id,
+                          int lightPaths, SamplePath& result) {
+    static thread_local Sample found;
+    static thread_local BidirectionalMemory memory;
+    const TechniqueSet techniques =
+        settings.kind == "lt" ? TechniqueSet::lightTracing() : settings.techniques;
+    const SpectralSample color = drawWavelengths(view, id);
+    found.contributions.clear();
+    memory.light.vertices.clear();
+    std::swap(memory.camera, result.cameraPath);
+    BidirectionalSample sample{view, color, settings, techniques, memory, found};
     result.lightPaths.resize(static_cast<std::size_t>(lightPaths));
     for (int i = 0; i < lightPaths; ++i) {
         RandomStream random = lightPathRandom(view, id, i, lightPaths);
-        walkFromLight(view.scene, wavelengths, settings, random,
-                      result.lightPaths[static_cast<std::size_t>(i)]);
+        walkFromLight(view.scene, color.wavelengths, settings, random, memory.light);
+        connectToLens(sample, random);
+        if (i + 1 < lightPaths) result.lightPaths[static_cast<std::size_t>(i)] = memory.light;
     }
-}
-
-void retraceCameraPath(const View& view, const EstimatorSettings& settings, SampleId id,
-                       SamplePath& result) {
-    result.camera = drawCameraSample(view, id);
-    if (!result.camera->ray) return;
-    walkFromCamera(view.scene, *result.camera, settings, result.cameraPath);
-}
-
-bool walksFromCamera(const EstimatorSettings& settings) {
-    return settings.kind != "lt" && settings.techniques.needsCameraWalk(settings.maxDepth);
+    if (techniques.needsCameraWalk(settings.maxDepth)) {
+        result.camera = drawCameraSample(view, id);
+        if (result.camera->ray) {
+            walkFromCamera(view.scene, *result.camera, settings, memory.camera);
+            connectSubpaths(sample, *result.camera);
+        }
+    }
+    std::swap(memory.camera, result.cameraPath);
+    if (lightPaths > 0) std::swap(result.lightPaths.back(), memory.light);
+    std::swap(result.contributions, found.contributions);
+    for (const Contribution& c : result.contributions)
+        if (!c.isSplat) result.ownPixel += c.value * c.weight;
 }
 
 }  // namespace
@@ -208,19 +219,13 @@ void retraceSample(const View& view, const Estimator& estimator, const Estimator
     result.camera.reset();
     result.cameraPath.vertices.clear();
     result.cameraPath.escape.reset();
-    result.lightPaths.clear();
     result.contributions.clear();
     result.ownPixel = {};
     if (settings.kind == "pt") {
+        result.lightPaths.clear();
         retracePathTracing(view, settings, id, result);
     } else {
-        retraceLightPaths(view, settings, id, estimator.lightPathsPerSample(), result);
-        if (walksFromCamera(settings)) retraceCameraPath(view, settings, id, result);
-        static thread_local Sample sample;
-        estimator.takeSample(view, id, {}, sample);
-        result.contributions = sample.contributions;
-        for (const Contribution& c : result.contributions)
-            if (!c.isSplat) result.ownPixel += c.value * c.weight;
+        retraceBidirectional(view, settings, id, estimator.lightPathsPerSample(), result);
     }
 }
 

@@ -28,12 +28,14 @@ TEST_CASE("Bench agreement: prints a row for each scene, camera and estimator") 
     const Outcome outcome =
         run(scenes.arguments() + " --cameras own,wide --samples 2 --size 16,12 --seeds 4");
     CHECK(outcome.code == 0);
-    for (const char* row : {"box    own     lt      pt", "box    own     bdpt    pt",
-                            "box    wide    lt      pt", "box    wide    bdpt    pt"})
+    for (const char* row :
+         {"box    own     lt      pt", "box    own     bdpt    pt", "box    own     lt      bdpt",
+          "box    wide    lt      pt", "box    wide    bdpt    pt", "box    wide    lt      bdpt"})
         CHECK(contains(outcome.output, row));
-    CHECK(contains(outcome.output, "box, own, lt: "));
+    CHECK(contains(outcome.output, "box, own, lt against pt: "));
     CHECK(contains(outcome.output, "of pt's light: what is seen first in a mirror"));
-    CHECK(contains(outcome.output, "4/4  box, wide, bdpt: "));  // progress, without a terminal
+    CHECK(contains(outcome.output,
+                   "6/6  box, wide, lt against bdpt: "));  // progress, without a terminal
     CHECK(contains(outcome.output, "4 pictures a side"));
     const Outcome json = run(scenes.arguments() +
                              " --samples 2 --seeds 4 --json --cameras wide --estimators lt box");
@@ -57,6 +59,35 @@ TEST_CASE("Bench agreement: the same command gives the same figures for any numb
     CHECK(figures("--seed 99") != one);
 }
 
+TEST_CASE("Bench agreement: each technique alone is held against path tracing") {
+    const Scenes scenes;
+    const std::string few = " --samples 1 --size 16,12 --seeds 2 --cameras own --techniques 2";
+    const std::string text = run(scenes.arguments() + few).output;
+    for (const char* row : {"bdpt:s1t1  bdpt", "bdpt:s1t2  pt", "bdpt:s2t1  pt"})
+        CHECK(contains(text, row));
+    CHECK(contains(text, "of pt's light: a mirror, smooth glass or a smooth coat where"));
+    // Its point and its sun are met by no ray.
+    CHECK(contains(text, "not complete"));
+    CHECK(contains(text, "comparisons. agree"));
+}
+
+TEST_CASE("Bench agreement: time reckoned by a table gives the same samples in every run") {
+    const Scenes scenes;
+    const auto samplesOf = [&](const std::string& more) {
+        const std::string text =
+            run(scenes.arguments() + " --cameras own --size 16,12 --seeds 4 " +
+                "--estimators bdpt --json --reckon --time 0.05" + more + " 2> /dev/null")
+                .output;
+        return text.substr(0, text.find("\"seconds\""));
+    };
+    const std::string once = samplesOf("");
+    CHECK(contains(once, "\"samples\": "));
+    CHECK(samplesOf(" --threads 1") == once);
+    CHECK(run(scenes.arguments() + " --cameras own --size 16,12 --seeds 4 --samples 1 " +
+              "--must-agree 1")
+              .code == 1);
+}
+
 TEST_CASE("Bench agreement: names that do not exist are told with the nearest that does") {
     const Scenes scenes;
     const Outcome scene = run(scenes.arguments() + " bux");
@@ -67,6 +98,8 @@ TEST_CASE("Bench agreement: names that do not exist are told with the nearest th
     CHECK(contains(camera.output, "did you mean \"wide\"?"));
     CHECK(run("bench agreement --scenes " + (scenes.folder / "cameras").string()).code == 66);
     CHECK(run(scenes.arguments() + " --estimators vcm").code == 64);
+    CHECK(run(scenes.arguments() + " --estimators bdpt:s2").code == 64);
+    CHECK(run(scenes.arguments() + " --estimators bdpt:s2t2 --against bdpt:s2t1").code == 64);
     CHECK(run(scenes.arguments() + " --seeds 1").code == 64);
     CHECK(run("bench").code == 64);
 }
@@ -78,7 +111,7 @@ TEST_CASE("Bench agreement: a scene that cannot be loaded costs its own rows onl
     const Outcome outcome =
         run(scenes.arguments() + " --cameras own --estimators lt --samples 1 --size 16,12");
     CHECK(outcome.code == 65);
-    CHECK(contains(outcome.output, "a-bad-one, own, lt: "));
+    CHECK(contains(outcome.output, "a-bad-one, own, lt against pt: "));
     CHECK(contains(outcome.output, "scene.toml:2"));
     CHECK(contains(outcome.output, "box        own"));
 }

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <numeric>
 
 #include "lens/lens_model.h"
@@ -21,11 +22,12 @@ struct Outcome {
     LeftOutMeans leftOut;
 };
 
-/// The mean of a picture of what `kind` and `other` can both make, and what was left out.
-Outcome renderCommon(const LoadedScene& loaded, const std::string& kind, const std::string& other) {
-    EstimatorSettings settings = loaded.estimator;
-    settings.kind = kind;
-    const auto estimator = makeCommonPaths(*loaded.scene, settings, other);
+/// The mean of a picture of what `self` and `other` both make, and what was left out.
+Outcome renderCommon(const LoadedScene& loaded, const std::string& self, const std::string& other,
+                     bool keepsByChance = true) {
+    const auto estimator = makeCommonPaths(*loaded.scene, *loaded.camera,
+                                           {loaded.estimator, parseContender(self).value(),
+                                            parseContender(other).value(), keepsByChance});
     Film film({loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height},
               {}, loaded.film.color);
     const Filter filter(loaded.film.filter, loaded.film.filterRadius);
@@ -72,13 +74,20 @@ TEST_CASE("Path classes: what is left out and what is not are all of the picture
     for (const std::string& color : {std::string("film.color=auto"), dispersiveGlass}) {
         CAPTURE(color);
         const LoadedScene loaded = sceneFromText(everyMaterialScene, {color});
-        for (const auto& pair :
-             {std::pair{"pt", "lt"}, {"lt", "pt"}, {"bdpt", "pt"}, {"bdpt", "lt"}}) {
-            const std::string kind = pair.first, other = pair.second;
-            CAPTURE(kind);
+        // What bdpt:s0t4 makes are all paths of three edges that path tracing does.
+        for (const auto& names : {std::array<std::string, 3>{"pt", "lt", "pt"},
+                                  {"lt", "pt", "lt"},
+                                  {"bdpt", "pt", "bdpt"},
+                                  {"bdpt", "lt", "bdpt"},
+                                  {"pt", "bdpt", "pt"},
+                                  {"pt", "bdpt:s2t2", "bdpt:s0t4"},
+                                  {"pt", "bdpt:s3t1", "bdpt:s0t4"},
+                                  {"bdpt", "bdpt:s1t3", "bdpt:s0t4"}}) {
+            const std::string self = names[0], other = names[1], whole = names[2];
+            CAPTURE(self);
             CAPTURE(other);
-            const Outcome all = renderCommon(loaded, kind, kind);
-            const Outcome common = renderCommon(loaded, kind, other);
+            const Outcome all = renderCommon(loaded, self, whole);
+            const Outcome common = renderCommon(loaded, self, other, other.size() > 4);
             CHECK(total(all.leftOut) == 0.0);
             CHECK(total(common.leftOut) > 0.01 * all.mean);
             // The same samples, summed in another order as floats.
@@ -160,12 +169,81 @@ intensity = [30, 30, 30]
     CHECK(of(againstPath, PathClass::mirroredPoint) > 0.001 * againstPath.mean);
 }
 
+TEST_CASE("Path classes: lamps met by chance are left out of all three, and no others") {
+    // A wall of mirror behind a matte floor, and a lamp that the mirror throws on the floor.
+    const std::string scene = everyMaterialFrame + R"(
+[[material]]
+name = "mirror"
+type = "conductor"
+metal = "silver"
+roughness = 0
+[[mesh]]
+shape = "rectangle"
+material = "mirror"
+transform = [{scale = 3}, {translate = [0, 1, -2]}]
+[[material]]
+name = "floor"
+color = [0.5, 0.5, 0.5]
+[[mesh]]
+shape = "rectangle"
+material = "floor"
+transform = [{scale = 2}, {rotate = [1, 0, 0, -90]}]
+[[material]]
+name = "lamp"
+color = [0, 0, 0]
+emission = [9, 8, 6]
+[[mesh]]
+name = "lamp"
+shape = "sphere"
+material = "lamp"
+transform = [{scale = 0.15}, {translate = [0.3, 0.8, 0]}]
+)";
+    const LoadedScene small = sceneFromText(scene);
+    const Outcome all = renderCommon(small, "bdpt", "pt", false);
+    CHECK(of(all, PathClass::caustic) > 0.0);
+    CHECK(of(all, PathClass::smallLamp) > 0.0);
+    CHECK(of(renderCommon(small, "bdpt", "bdpt:s0t4", false), PathClass::caustic) > 0.0);
+    CHECK(of(renderCommon(small, "bdpt", "bdpt:s0t3", false), PathClass::smallLamp) > 0.0);
+    for (const std::string pt : {"pt", "bdpt:s0t4"})
+        CHECK(total(renderCommon(small, "bdpt", pt, true).leftOut) == 0.0);
+    CHECK(total(renderCommon(small, "bdpt", "bdpt", false).leftOut) == 0.0);
+    CHECK(of(renderCommon(small, "lt", "bdpt", false), PathClass::caustic) == 0.0);
+    // Without a mirror there is no caustic; from near the lamp is large.
+    const LoadedScene matte = sceneFromText(scene, {"material.mirror.roughness=0.3"});
+    const Outcome fromCamera = renderCommon(matte, "pt", "bdpt", false);
+    CHECK(of(fromCamera, PathClass::caustic) == 0.0);
+    CHECK(of(fromCamera, PathClass::smallLamp) == total(fromCamera.leftOut));
+    CHECK(of(fromCamera, PathClass::smallLamp) > 0.0);
+    const LoadedScene near = sceneFromText(scene, {"camera.from=[0.3, 1, 1.2]"});
+    CHECK(of(renderCommon(near, "pt", "bdpt", false), PathClass::smallLamp) == 0.0);
+}
+
+TEST_CASE("Path classes: a contender's name is what it was read from") {
+    for (const std::string name : {"pt", "lt", "bdpt", "bdpt:s0t2", "bdpt:s2t11"})
+        CHECK(nameOf(parseContender(name).value()) == name);
+    for (const std::string text : {"", "vcm", "pt:s1t2", "bdpt:", "bdpt:s1", "bdpt:t1", "bdpt:s1t0",
+                                   "bdpt:s0t1", "bdpt:s01t2", "bdpt:s1t2,s2t1", "bdpt:s1t2x"}) {
+        CAPTURE(text);
+        CHECK_FALSE(parseContender(text));
+    }
+}
+
 TEST_CASE("Path classes: each estimator is blind to what it is, and bdpt to none of it") {
+    const Contender pt{"pt", {}}, lt{"lt", {}}, bdpt{"bdpt", {}};
+    const Contender toLens{"bdpt", Technique{2, 1}}, toLight{"bdpt", Technique{0, 3}};
     for (std::size_t i = 0; i < pathClassCount; ++i) {
-        CHECK(canMake("bdpt", static_cast<PathClass>(i)));
+        CHECK(canMake(bdpt, static_cast<PathClass>(i)));
+        CHECK_FALSE(makesByChance(bdpt, static_cast<PathClass>(i)));
+        CHECK_FALSE(makesByChance(lt, static_cast<PathClass>(i)));
         CHECK_FALSE(describe(static_cast<PathClass>(i)).empty());
     }
-    CHECK_FALSE(canMake("lt", PathClass::mirrorFirst));
-    CHECK_FALSE(canMake("lt", PathClass::lostByLens));
-    CHECK_FALSE(canMake("pt", PathClass::mirroredPoint));
+    for (const Contender& blind : {lt, toLens}) {
+        CHECK_FALSE(canMake(blind, PathClass::mirrorFirst));
+        CHECK_FALSE(canMake(blind, PathClass::lostByLens));
+    }
+    CHECK_FALSE(canMake(pt, PathClass::mirroredPoint));
+    for (const Contender& blind : {pt, toLight}) {
+        CHECK(makesByChance(blind, PathClass::caustic));
+        CHECK(makesByChance(blind, PathClass::smallLamp));
+    }
 }

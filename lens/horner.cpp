@@ -1,5 +1,8 @@
 #include "lens/horner.h"
 
+#include <functional>
+#include <set>
+
 namespace etendue {
 
 namespace {
@@ -23,16 +26,27 @@ struct HornerWalk {
             return;
         }
         const std::size_t variable = order[level];
-        int highest = 0;
-        for (const std::size_t term : among)
-            highest = std::max<int>(highest, terms[term][variable]);
-        scheme.counts.push_back(static_cast<std::uint8_t>(highest + 1));
-        for (int power = highest; power >= 0; --power) {
+        const std::vector<int> powers = powersOf(among, variable);
+        scheme.counts.push_back(static_cast<std::uint8_t>(powers.size()));
+        for (std::size_t i = 0; i < powers.size(); ++i) {
             std::vector<std::size_t> inner;
             for (const std::size_t term : among)
-                if (terms[term][variable] == power) inner.push_back(term);
+                if (terms[term][variable] == powers[i]) inner.push_back(term);
             descend(inner, level + 1);
+            const int next = i + 1 < powers.size() ? powers[i + 1] : 0;
+            if (hasGaps(static_cast<int>(order.size())))
+                scheme.counts.push_back(static_cast<std::uint8_t>(powers[i] - next));
         }
+    }
+
+    /// From the highest down, zero at least; without gaps unless the sweep can skip them.
+    std::vector<int> powersOf(const std::vector<std::size_t>& among, std::size_t variable) const {
+        std::set<int, std::greater<>> powers;
+        for (const std::size_t term : among) powers.insert(terms[term][variable]);
+        if (powers.empty()) powers.insert(0);
+        if (!hasGaps(static_cast<int>(order.size())))
+            for (int power = *powers.begin(); power >= 0; --power) powers.insert(power);
+        return {powers.begin(), powers.end()};
     }
 };
 

@@ -5,7 +5,7 @@
 //
 // No power and no monomial is ever formed, and a derivative costs one more multiply-add from the
 // level of its variable outward: none in the levels within, where most of the terms are. Powers
-// that are missing among those of a sum are there with zeros.
+// that are missing among those of a sum are there with zeros, or skipped (hasGaps).
 //
 // Several polynomials on one support are summed together. Each has a slot in the coefficients of a
 // term.
@@ -29,8 +29,10 @@ struct HornerScheme {
     HornerTerms<T> terms() const { return {counts.data(), coefficients.data(), slots}; }
 
     std::size_t slots;
-    std::vector<std::uint8_t> counts;  // of the powers of each sum, in the order of evaluation
-    std::vector<T> coefficients;       // [term][slot]
+    /// Of the powers of each sum, in the order of evaluation. With gaps: after each power, its
+    /// distance from the next, or from zero.
+    std::vector<std::uint8_t> counts;
+    std::vector<T> coefficients;  // [term][slot]
 };
 
 }  // namespace etendue

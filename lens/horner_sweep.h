@@ -10,6 +10,10 @@
 
 namespace etendue {
 
+/// Whether a scheme of so many levels leaves out the powers that are missing: where mirror planes
+/// allow every other power only. Axial ones, of four levels, have hardly any.
+constexpr bool hasGaps(int levels) { return levels > 4; }
+
 /// Where a scheme's numbers are.
 template <class T>
 struct HornerTerms {
@@ -64,12 +68,26 @@ private:
             sum<Level + 1>(result);
             if constexpr (Level < By)
                 for (auto& jet : result.jets) jet[derivatives(Level)] = Number::all(T(0));
-            while (--powers > 0) {
-                Sums term;
-                sum<Level + 1>(term);
-                multiplyAdd<Level>(result, term);
+            if constexpr (hasGaps(Levels)) {
+                int gap = *count_++;
+                while (--powers > 0) {
+                    for (; gap > 1; --gap) multiply<Level>(result);
+                    addNext<Level>(result);
+                    gap = *count_++;
+                }
+                for (; gap > 0; --gap) multiply<Level>(result);
+            } else {
+                while (--powers > 0) addNext<Level>(result);
             }
         }
+    }
+
+    /// result = result × variable + the next term
+    template <int Level>
+    [[gnu::always_inline]] void addNext(Sums& result) {
+        Sums term;
+        sum<Level + 1>(term);
+        multiplyAdd<Level>(result, term);
     }
 
     [[gnu::always_inline]] void takeCoefficients(Sums& result) {
@@ -81,6 +99,19 @@ private:
     [[gnu::always_inline]] Number coefficient(int slot) const {
         if constexpr (lanes == Lanes::slots) return Number::load(coefficients_ + slot);
         return Number::all(coefficients_[slot]);
+    }
+
+    /// result = result × variable, with derivatives.
+    template <int Level>
+    [[gnu::always_inline]] void multiply(Sums& result) {
+        constexpr int own = derivatives(Level), inner = derivatives(Level + 1);
+        const Number& x = variables_[Level];
+        for (int i = 0; i < Jets; ++i) {
+            auto& jet = result.jets[i];
+            if constexpr (own > inner) jet[own] = fma(jet[own], x, jet[0]);
+            for (int part = 0; part <= inner; ++part) jet[part] = jet[part] * x;
+        }
+        for (int i = 0; i < Values; ++i) result.values[i] = result.values[i] * x;
     }
 
     /// result = result × variable + term, with derivatives.

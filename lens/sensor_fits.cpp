@@ -21,7 +21,8 @@ std::span<const FitRay> enoughOf(std::span<const FitRay> training) {
 SparsePolynomial fitVectors(std::span<const PolynomialInput> inputs, const Eigen::MatrixXd& targets,
                             const Eigen::VectorXd& tolerances, bool isAxial) {
     // Enough for a first guess within 2e-5 rad of most targets, so that the search can end there.
-    constexpr int degree = 11, terms = 48;
+    // Between mirror planes a term is of one component, and there are more of them.
+    const int degree = isAxial ? 11 : 13, terms = isAxial ? 48 : 96;
     const PolynomialBasis basis = isAxial ? PolynomialBasis::axial : PolynomialBasis::twoPlane;
     const OutputCount outputs{static_cast<int>(tolerances.size()), 0};
     return fitSparse(basis, outputs, candidateTerms(basis, degree, outputs),

@@ -142,6 +142,37 @@ TEST_CASE("PolynomialLens: connect finds the film point that trace started from"
         }
 }
 
+TEST_CASE(
+    "PolynomialLens: a sighting's ray meets the target, its weight is that of the ray there") {
+    for (const Fitted* fitted : {&doubleGaussIn(FitForm::twoPoint), &fisheye()})
+        for (const double distance : {300.0, 1e5}) {
+            double offs = 0.0;
+            int count = 0;
+            for (std::uint64_t i = 0; i < 300; ++i) {
+                const FitQuery q = fitted->query(i);
+                const auto ray = fitted->lens.trace(q.sensor, q.aperture, q.wavelengthNm);
+                if (!ray) continue;
+                const Eigen::Vector3d target = ray->origin + distance * ray->direction;
+                const auto seen = fitted->lens.see(target, q.aperture, q.wavelengthNm);
+                REQUIRE(seen.has_value());
+                const Eigen::Vector3d toTarget = target - seen->ray.origin;
+                // The search may end 2e-5 rad off, and the last step squares that.
+                const double missed = toTarget.cross(seen->ray.direction).norm() / toTarget.norm();
+                CHECK(missed <= 2.0 * 2e-5 * 2e-5);
+                CHECK(std::abs(seen->ray.direction.norm() - 1.0) <= 1e-14);
+                const auto weight = [&](const ExitRay& r) {
+                    return r.throughput / determinantAcross(r.direction, footprint(r, distance));
+                };
+                const double off = weight(seen->ray) / weight(*ray) - 1.0;
+                // Of 2e-5 rad; weights change by ten times themselves a radian near the rim.
+                CHECK(std::abs(off) <= 2e-4);
+                offs += off;
+                ++count;
+            }
+            CHECK(std::abs(offs / count) <= 1e-5);  // and no bias to speak of
+        }
+}
+
 TEST_CASE("PolynomialLens: a fisheye's first guess takes in where the rays of a field leave") {
     // Its pupil wanders by 10 cm. Were all rays taken to come from one point, a target 30 cm off
     // would be missed by 20 degrees, and two steps or three be needed.

@@ -3,62 +3,12 @@
 // of each at equal samples, with a picture of each.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <vector>
 
+#include "bench/picture_noise.h"
 #include "lens/fit_cache.h"
-#include "renderer/parallel.h"
-#include "renderer/render.h"
-#include "renderer/scene_loader.h"
 #include "renderer/srgb.h"
-#include "statistics/statistics.h"
-
-namespace etendue {
-namespace {
-
-using Picture = std::vector<float>;
-
-struct Measured {
-    std::vector<double> means;  // of each picture
-    double variance = 0.0;      // of a pixel, mean over the pixels
-    double seconds = 0.0;
-    Picture first;
-};
-
-Measured measure(const LoadedScene& loaded, std::uint32_t samples, int seeds) {
-    Measured result;
-    std::vector<Picture> pictures;
-    for (int seed = 0; seed < seeds; ++seed) {
-        Film film(
-            {loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height},
-            {}, loaded.film.color);
-        RenderSettings settings;
-        settings.samples = samples;
-        settings.seed = static_cast<std::uint64_t>(seed);
-        settings.threads = hardwareThreads();
-        result.seconds +=
-            render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator),
-                   Filter(loaded.film.filter, loaded.film.filterRadius), film, settings, {})
-                .seconds;
-        pictures.push_back(film.channels().front().pixels);
-        double sum = 0.0;
-        for (const float v : pictures.back()) sum += static_cast<double>(v);
-        result.means.push_back(sum / static_cast<double>(pictures.back().size()));
-    }
-    for (std::size_t i = 0; i < pictures.front().size(); ++i) {
-        std::vector<double> values;
-        for (const Picture& p : pictures) values.push_back(static_cast<double>(p[i]));
-        result.variance +=
-            summarize(values).variance / static_cast<double>(pictures.front().size());
-    }
-    result.first = pictures.front();
-    return result;
-}
-
-}  // namespace
-}  // namespace etendue
 
 /// Arguments: the project's folder, a folder for the pictures, samples per pixel (512), seeds (16).
 int main(int argc, char** argv) {
@@ -83,7 +33,7 @@ int main(int argc, char** argv) {
                             fitCacheDirectory()};
         options.overrides.insert(options.overrides.end(), method.keys.begin(), method.keys.end());
         const LoadedScene loaded = loadScene(project / "scenes/fisheye-room/scene.toml", options);
-        const Measured m = measure(loaded, samples, seeds);
+        const PictureNoise m = measureNoise(loaded, samples, seeds);
         const Summary mean = summarize(m.means);
         if (aimed == 0.0) aimed = m.variance;
         fmt::print("{:<14}{:>12.6f}{:>12.6f}{:>14.3g}{:>18.2f}{:>14.1f}\n", method.name, mean.mean,
@@ -91,7 +41,7 @@ int main(int argc, char** argv) {
                    m.variance, m.variance / aimed, m.seconds);
         std::fflush(stdout);
         writePng(out / fmt::format("pupil-{}.png", method.name), loaded.film.width,
-                 loaded.film.height, srgbBytes(m.first, 0.0f));
+                 loaded.film.height, srgbBytes(m.pictures.front(), 0.0f));
     }
     return 0;
 }

@@ -20,7 +20,6 @@ struct AgreementSettings {
     std::optional<int> samples;     // per pixel of each picture; else as many as time allows
     double seconds = 20.0;          // for one comparison, about
     bool reckonsTime = false;       // by a table and not by the clock: always the same samples
-    double reckonedLensCost = 1.0;  // then: how much longer samples take through this lens
     std::optional<Sampler> sampler = Sampler::sobol;  // none: the scene's
     bool keepsByChance = false;   // compares what path tracing meets only by chance, too
     double bound = 0.002;         // of the relative bias

@@ -44,18 +44,52 @@ Refraction refractionAt(const MonochromaticSystem& lens, std::size_t surface) {
     return {sceneSide, sensorSide, 1.0, 1.0};
 }
 
-/// Snell's law. `normal` is of unit length and points toward the scene. False: total reflection.
-template <Heading heading, class T>
-bool refract(const Vector3<T>& normal, Refraction& refraction, Vector3<T>& direction) {
-    using std::sqrt;
+/// How a direction is bent: direction * ratio + normal * along.
+struct Bend {
+    double ratio, along;
+};
+
+/// Snell's law. `normal` is of unit length and points toward the scene. Empty: total reflection.
+template <Heading heading>
+std::optional<Bend> bendOf(const Vector3<double>& normal, const Vector3<double>& direction,
+                           Refraction& refraction) {
     const double ratio = refraction.indexFrom / refraction.indexTo;
-    const T along = dot(direction, normal);  // positive toward the scene
-    const T radicand = 1.0 - ratio * ratio * (1.0 - along * along);
-    if (!(valueOf(radicand) > 0.0)) return false;
-    const T leaving = heading == Heading::toScene ? sqrt(radicand) : -sqrt(radicand);
-    direction = direction * ratio + normal * (leaving - ratio * along);
-    refraction.cosFrom = std::abs(valueOf(along));
-    refraction.cosTo = std::abs(valueOf(leaving));
+    const double along = dot(direction, normal);  // positive toward the scene
+    const double radicand = 1.0 - ratio * ratio * (1.0 - along * along);
+    if (!(radicand > 0.0)) return {};
+    refraction.cosFrom = std::abs(along);
+    refraction.cosTo = std::sqrt(radicand);
+    const double leaving = heading == Heading::toScene ? refraction.cosTo : -refraction.cosTo;
+    return Bend{ratio, leaving - ratio * along};
+}
+
+/// False: total reflection.
+template <Heading heading>
+bool refract(const Vector3<double>& normal, Refraction& refraction, Vector3<double>& direction) {
+    const std::optional<Bend> bend = bendOf<heading>(normal, direction, refraction);
+    if (!bend) return false;
+    direction = direction * bend->ratio + normal * bend->along;
+    return true;
+}
+
+template <Heading heading, int N>
+bool refract(const Vector3<Dual<N>>& normal, Refraction& refraction, Vector3<Dual<N>>& direction) {
+    const Vector3<double> n = valueOf(normal), d = valueOf(direction);
+    const std::optional<Bend> bend = bendOf<heading>(n, d, refraction);
+    if (!bend) return false;
+    const auto [ratio, along] = *bend;
+    const Vector3<double> bent = d * ratio + n * along;
+    // ∂ of what is left of the cosine, by that of the cosine before.
+    const double leaving = dot(bent, n),
+                 alongByCosine = ratio * (ratio * dot(d, n) / leaving - 1.0);
+    for (std::size_t i = 0; i < N; ++i) {
+        const Vector3<double> dn = partialsOf(normal, i), dd = partialsOf(direction, i);
+        const double alongBy = alongByCosine * (dot(dd, n) + dot(d, dn));
+        setPartials(direction, i, dd * ratio + dn * along + n * alongBy);
+    }
+    direction.x.value = bent.x;
+    direction.y.value = bent.y;
+    direction.z.value = bent.z;
     return true;
 }
 
@@ -78,7 +112,7 @@ inline TraceStatus statusAt(const OpticalSystem& system, std::size_t index, doub
 /// Carries `ray`, whose direction has unit length, across surface `index`; at the end its origin
 /// lies there. False: it does not pass, and `passage` says why.
 template <Heading heading, TraceMode mode, class T>
-bool crossSurface(const MonochromaticSystem& lens, std::size_t index, LensRay<T>& ray,
+[[gnu::flatten]] bool crossSurface(const MonochromaticSystem& lens, std::size_t index, LensRay<T>& ray,
                   Passage& passage) {
     const auto stopped = [&](TraceStatus status) {
         passage.status = status;

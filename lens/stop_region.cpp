@@ -21,8 +21,10 @@ bool passes(const MonochromaticSystem& lens, const Eigen::Vector2d& a, const Eig
 }
 
 /// p per a of the rays from the sensor's centre, in the paraxial limit.
-Eigen::Vector2d paraxialCentre(const MonochromaticSystem& lens, double sensorZMm) {
+Eigen::Vector2d paraxialCentre(const OpticalSystem& system, double sensorZMm) {
     using D = Dual<4>;
+    const std::vector<double> indices = refractiveIndices(system, dLineNm);
+    const MonochromaticSystem lens{system, indices, dLineNm};
     LensRay<D> ray = rayAtStop<D>(lens.system, {D::variable(0.0, 0), D::variable(0.0, 1),
                                                 D::variable(0.0, 2), D::variable(0.0, 3)});
     if (leaveRear<TraceMode::geometry>(lens, ray).status != TraceStatus::passed) return {0.0, 0.0};
@@ -58,11 +60,8 @@ double StopRegion::outermost(const MonochromaticSystem& lens, const Eigen::Vecto
     return outside;
 }
 
-StopRegion::Box StopRegion::boxAt(const MonochromaticSystem& lens,
-                                  const Eigen::Vector2d& aperture) {
+void StopRegion::widen(Box& box, const MonochromaticSystem& lens, const Eigen::Vector2d& aperture) {
     constexpr int directions = 12;
-    // The centre counts as inside: what passes may be a ring about it, or lie all on one side.
-    Box box{0.0, 0.0, 0.0};
     for (int i = 0; i <= directions; ++i) {
         const double turn = std::numbers::pi * i / directions;
         const Eigen::Vector2d along(std::cos(turn), std::sin(turn));
@@ -73,53 +72,58 @@ StopRegion::Box StopRegion::boxAt(const MonochromaticSystem& lens,
         box.highest = std::max(box.highest, reach * along.x());
         box.widest = std::max(box.widest, reach * along.y());
     }
-    // Where nothing passes, who knows what does beside it.
-    if (!(box.lowest < box.highest)) return {-infinity, infinity, infinity};
-    return box;
 }
 
-StopRegion::StopRegion(const MonochromaticSystem& lens, double sensorZMm)
-    : isAxial_(std::ranges::all_of(lens.system.surfaces,
+StopRegion::StopRegion(const OpticalSystem& system, double sensorZMm)
+    : isAxial_(std::ranges::all_of(system.surfaces,
                                    [](const TracedSurface& surface) {
                                        return surface.shape.curvature == 0.0 ||
                                               (surface.shape.curvedInX && surface.shape.curvedInY);
                                    })),
-      ringsPerMm_((ringCount - 1) / lens.system.aperture.radiusMm()),
-      centrePerMm_(paraxialCentre(lens, sensorZMm)) {
-    const auto join = [](const Box& a, const Box& b) -> Box {
-        return {std::min(a.lowest, b.lowest), std::max(a.highest, b.highest),
-                std::max(a.widest, b.widest)};
-    };
+      ringsPerMm_((ringCount - 1) / system.aperture.radiusMm()),
+      centrePerMm_(paraxialCentre(system, sensorZMm)) {
+    // The centre counts as inside: what passes may be a ring about it, or lie all on one side.
     std::array<Box, ringCount> rings;
-    for (std::size_t i = 0; i < ringCount; ++i) {
-        const double radius = static_cast<double>(i) / ringsPerMm_;
-        if (isAxial_) {
-            rings[i] = boxAt(lens, {radius, 0.0});
-            continue;
-        }
-        // Mirrored in both planes, whatever quarter the aperture point lies in.
-        rings[i] = {infinity, -infinity, 0.0};
-        constexpr int quarterSteps = 4;
-        for (int k = 0; k <= quarterSteps; ++k) {
-            const double turn = 0.5 * std::numbers::pi * k / quarterSteps;
-            for (const double side : {1.0, -1.0})
-                rings[i] =
-                    join(rings[i],
-                         boxAt(lens, {radius * std::cos(turn), side * radius * std::sin(turn)}));
-        }
-        rings[i].highest = std::max(rings[i].highest, -rings[i].lowest);
-        rings[i].lowest = -rings[i].highest;
+    rings.fill({0.0, 0.0, 0.0});
+    for (const double nm : {shortestWavelengthNm, longestWavelengthNm}) {
+        const std::vector<double> indices = refractiveIndices(system, nm);
+        const MonochromaticSystem lens{system, indices, nm};
+        if (isAxial_)
+            for (std::size_t i = 0; i < ringCount; ++i)
+                widen(rings[i], lens, {static_cast<double>(i) / ringsPerMm_, 0.0});
+        else
+            widenForAll(rings.front(), lens);
     }
-    for (std::size_t i = 0; i + 1 < ringCount; ++i) {
-        Box box = join(rings[i], rings[i + 1]);
-        // Beyond what one ring differs from the next, and the directions tried from those between.
-        constexpr double share = 0.08;
-        const double margin = share * std::max({box.highest, -box.lowest, box.widest});
-        box.lowest -= margin;
-        box.highest += margin;
-        box.widest += margin;
-        boxes_[i] = box;
-    }
+    if (!isAxial_) rings.fill(rings.front());
+    for (std::size_t i = 0; i + 1 < ringCount; ++i) boxes_[i] = between(rings[i], rings[i + 1]);
+}
+
+void StopRegion::widenForAll(Box& box, const MonochromaticSystem& lens) {
+    widen(box, lens, {0.0, 0.0});
+    constexpr int directions = 16;
+    for (int k = 0; k <= directions; ++k)
+        for (const double share : {0.5, 1.0}) {
+            const double turn = std::numbers::pi * (static_cast<double>(k) / directions - 0.5);
+            const double radius = share * lens.system.aperture.radiusMm();
+            widen(box, lens, {radius * std::cos(turn), radius * std::sin(turn)});
+        }
+    box.highest = std::max(box.highest, -box.lowest);  // mirrored
+    box.lowest = -box.highest;
+}
+
+StopRegion::Box StopRegion::between(const Box& inner, const Box& outer) {
+    // Where nothing was seen to pass, who knows what does.
+    for (const Box& box : {inner, outer})
+        if (!(box.lowest < box.highest)) return {-infinity, infinity, infinity};
+    Box box{std::min(inner.lowest, outer.lowest), std::max(inner.highest, outer.highest),
+            std::max(inner.widest, outer.widest)};
+    // Beyond what one ring differs from the next, and the directions tried from those between.
+    constexpr double share = 0.08;
+    const double margin = share * std::max({box.highest, -box.lowest, box.widest});
+    box.lowest -= margin;
+    box.highest += margin;
+    box.widest += margin;
+    return box;
 }
 
 double StopRegion::steepest() const {

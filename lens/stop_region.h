@@ -15,8 +15,8 @@ namespace etendue {
 /// slope of a ray that passes all rims lies in it, with a margin for what was traced between.
 class StopRegion {
 public:
-    /// `lens` at the d line; the margin is for the other wavelengths as well.
-    StopRegion(const MonochromaticSystem& lens, double sensorZMm);
+    /// At every wavelength.
+    StopRegion(const OpticalSystem& system, double sensorZMm);
 
     /// By how much the slope is outside; 0 inside.
     double distanceTo(AperturePoint aperture, const Eigen::Vector2d& slope) const {
@@ -48,7 +48,11 @@ private:
     };
     static constexpr std::size_t ringCount = 9;
 
-    Box boxAt(const MonochromaticSystem& lens, const Eigen::Vector2d& aperture);
+    void widen(Box& box, const MonochromaticSystem& lens, const Eigen::Vector2d& aperture);
+    /// For every aperture point.
+    void widenForAll(Box& box, const MonochromaticSystem& lens);
+    /// For aperture points between two rings, with a margin.
+    static Box between(const Box& inner, const Box& outer);
     double outermost(const MonochromaticSystem& lens, const Eigen::Vector2d& aperture,
                      const Eigen::Vector2d& along) const;
 

@@ -8,8 +8,8 @@ namespace etendue {
 
 class StopSearch {
 public:
-    /// `lens` at the d line. Traces some thousand rays.
-    StopSearch(const MonochromaticSystem& lens, double sensorZMm);
+    /// Traces some thousand rays.
+    StopSearch(const OpticalSystem& system, double sensorZMm);
 
     /// The slope to start from, and how far from there the ray can be.
     struct Start {
@@ -28,7 +28,7 @@ private:
     StopRegion region_;
     StopStart start_;
     double nearestMm_;  // of targets far enough for first guesses to be trusted
-    double reach_;
+    double reach_, beyond_;  // where the rays to those are: of StopStart::Guess
 };
 
 }  // namespace etendue

@@ -22,7 +22,7 @@ std::optional<LensRay<Dual<4>>> rayFromCentre(const MonochromaticSystem& lens, d
 std::optional<StopStart::Row> StopStart::traced(const MonochromaticSystem& lens, double slope) {
     const auto ray = rayFromCentre(lens, slope);
     if (!ray) return {};
-    const auto& [x, d] = *ray;
+    const Vector3<Dual<4>>&x = ray->origin, &d = ray->direction;
     Row row{d.x.value, d.z.value, 0.0, slope, {}, {}};
     // In the plane: the component along (cosine, −sine).
     const auto turn = [&](std::size_t i) {
@@ -68,7 +68,10 @@ StopStart::StopStart(const MonochromaticSystem& lens, bool isAxial, double steep
     const double apart = fieldOf(found.back()) / keptRows;
     for (const Row& row : found)
         if (rows_.empty() || fieldOf(row) >= fieldOf(rows_.back()) + apart) rows_.push_back(row);
-    if (rows_.size() < 2) rows_.clear();
+    if (rows_.size() < 2)
+        rows_.clear();
+    else
+        lastRowsApart_ = fieldOf(rows_.back()) - fieldOf(rows_[rows_.size() - 2]);
 }
 
 StopStart::Place StopStart::placeOf(double farMm, double zMm) const {
@@ -89,30 +92,32 @@ StopStart::Place StopStart::placeOf(double farMm, double zMm) const {
     return {nearer, farther, change < 0.0 ? -here / change : farOut};
 }
 
-Eigen::Vector2d StopStart::slope(const Eigen::Vector3d& target, AperturePoint aperture) const {
+StopStart::Guess StopStart::guess(const Eigen::Vector3d& target, AperturePoint aperture) const {
     const Eigen::Vector2d& a = aperture.mm;
     if (rows_.empty()) {
         const double z = target.z();
-        return (target.head<2>() - (positionByAperture_ + z * slopeByAperture_).cwiseProduct(a))
-            .cwiseQuotient(positionBySlope_ + z * slopeBySlope_);
+        return {(target.head<2>() - (positionByAperture_ + z * slopeByAperture_).cwiseProduct(a))
+                    .cwiseQuotient(positionBySlope_ + z * slopeBySlope_),
+                0.0};
     }
     // A ray beside the stop's centre meets the target if one through the centre, of the same
     // direction, meets the target moved back by what they are apart; which takes the direction.
     constexpr int rounds = 3;
     Eigen::Vector3d moved = target;
-    Eigen::Vector2d slope;
+    Guess guess{};
     for (int i = 0; i < rounds; ++i) {
         const double far = moved.head<2>().norm();
         const Eigen::Vector2d e =
             far > 0.0 ? Eigen::Vector2d(moved.head<2>() / far) : Eigen::Vector2d(1.0, 0.0);
         const Eigen::Vector2d sideways(-e.y(), e.x()), inFrame(a.dot(e), a.dot(sideways));
         const auto [low, high, share] = placeOf(far, moved.z());
+        guess.beyond = &high == &rows_.back() ? (share - 1.0) * lastRowsApart_ : 0.0;
         const auto between = [t = share](const auto& from, const auto& to) {
             return from + t * (to - from);
         };
         const Eigen::Vector2d beside =
             inFrame.cwiseProduct(between(low.slopePerMm, high.slopePerMm).eval());
-        slope = (between(low.slope, high.slope) + beside.x()) * e + beside.y() * sideways;
+        guess.slope = (between(low.slope, high.slope) + beside.x()) * e + beside.y() * sideways;
         const Eigen::Vector2d apart =
             inFrame.cwiseProduct(between(low.asidePerMm, high.asidePerMm).eval());
         const Eigen::Vector2d flat =
@@ -120,7 +125,7 @@ Eigen::Vector2d StopStart::slope(const Eigen::Vector3d& target, AperturePoint ap
         moved =
             target - Eigen::Vector3d(flat.x(), flat.y(), -apart.x() * between(low.sine, high.sine));
     }
-    return slope;
+    return guess;
 }
 
 }  // namespace etendue

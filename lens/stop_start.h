@@ -18,8 +18,11 @@ public:
     /// `lens` at the d line. `steepest`: the largest slope at the stop worth a row.
     StopStart(const MonochromaticSystem& lens, bool isAxial, double steepest);
 
-    /// Huge or not a number far out of the field.
-    Eigen::Vector2d slope(const Eigen::Vector3d& targetMm, AperturePoint aperture) const;
+    struct Guess {
+        Eigen::Vector2d slope;  // huge or not a number far out of the field
+        double beyond;          // radians, about: past the widest of the rays traced
+    };
+    Guess guess(const Eigen::Vector3d& targetMm, AperturePoint aperture) const;
 
 private:
     /// About the rays of one direction. In the plane of axis and direction it is (sine, cosine);
@@ -39,7 +42,8 @@ private:
     };
     Place placeOf(double farMm, double zMm) const;
 
-    std::vector<Row> rows_;  // over fields at even distances; empty: paraxial
+    std::vector<Row> rows_;       // over fields at about even distances; empty: paraxial
+    double lastRowsApart_ = 0.0;  // radians
     // Of the ray's position at z = 0 and of its slope in the scene, by a and by p; x and y.
     Eigen::Vector2d positionByAperture_{0.0, 0.0}, positionBySlope_{0.0, 0.0};
     Eigen::Vector2d slopeByAperture_{0.0, 0.0}, slopeBySlope_{0.0, 0.0};

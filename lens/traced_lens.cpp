@@ -10,10 +10,6 @@ namespace etendue {
 
 namespace {
 
-bool isInRange(double wavelengthNm) {
-    return wavelengthNm >= shortestWavelengthNm && wavelengthNm <= longestWavelengthNm;
-}
-
 OpticalSystem withAperture(const Prescription& prescription, const Aperture& aperture) {
     OpticalSystem system(prescription);
     constexpr double rounding = 1.0 + 1e-12;
@@ -35,7 +31,7 @@ TracedLens::TracedLens(const Prescription& prescription, const Aperture& apertur
     : system_(withAperture(prescription, aperture)),
       sensorZMm_(system_.surfaces.back().vertexZMm - sensorDistanceMm),
       stopMap_(stopMap(system_, sensorDistanceMm)),
-      stopSearch_({system_, refractiveIndices(system_, dLineNm), dLineNm}, sensorZMm_) {
+      stopSearch_(system_, sensorZMm_) {
     if (!(sensorDistanceMm > 0.0 && std::isfinite(sensorDistanceMm)))
         throw std::invalid_argument("traced lens: the sensor must be behind the last surface");
     const ParaxialData data = paraxialData(system_);
@@ -56,18 +52,6 @@ std::optional<ExitRay> TracedLens::trace(SensorPoint sensor, AperturePoint apert
 std::optional<SensorPoint> TracedLens::connect(const Eigen::Vector3d& targetMm,
                                                AperturePoint aperture, double wavelengthNm) const {
     return solve(targetMm, aperture, wavelengthNm).sensor;
-}
-
-Connection TracedLens::solve(const Eigen::Vector3d& targetMm, AperturePoint aperture,
-                             double wavelengthNm, ConnectMethod method) const {
-    if (!isInRange(wavelengthNm)) return {ConnectStatus::outOfField, {}, 0};
-    return MonochromaticLens(*this, wavelengthNm).solve(targetMm, aperture, method);
-}
-
-std::optional<Sighting> TracedLens::see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
-                                        double wavelengthNm) const {
-    if (!isInRange(wavelengthNm)) return {};
-    return MonochromaticLens(*this, wavelengthNm).see(targetMm, aperture);
 }
 
 AperturePoint TracedLens::sampleAperture(Eigen::Vector2d u) const {

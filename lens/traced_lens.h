@@ -34,6 +34,11 @@ struct TracedRay {
 /// saves looking up the indices for each of many rays.
 class MonochromaticLens;
 
+/// Wavelengths at which there is light.
+inline bool isInRange(double wavelengthNm) {
+    return wavelengthNm >= shortestWavelengthNm && wavelengthNm <= longestWavelengthNm;
+}
+
 class TracedLens final : public LensModel {
 public:
     /// Throws InputError for a prescription with a fault, std::invalid_argument when the aperture
@@ -67,10 +72,14 @@ public:
     const StopMap& paraxialStopMap() const { return stopMap_; }
     /// The mean of x and y at the d line; negative for a lens that diverges.
     double focalLengthMm() const { return focalLengthMm_; }
-    /// Where connect() searches.
-    const StopSearch& stopSearch() const { return stopSearch_; }
 
 private:
+    friend class MonochromaticLens;
+
+    /// Of connect(); empty for an aperture point or a target that is none, too.
+    std::optional<StopSearch::Start> startOf(const Eigen::Vector3d& target,
+                                             AperturePoint aperture) const;
+
     OpticalSystem system_;
     double sensorZMm_;
     StopMap stopMap_;
@@ -94,7 +103,6 @@ public:
                                        AperturePoint aperture) const {
         return solve(targetMm, aperture).sensor;
     }
-    std::optional<Sighting> see(const Eigen::Vector3d& targetMm, AperturePoint aperture) const;
     Connection solve(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                      ConnectMethod method = ConnectMethod::newton) const;
 
@@ -110,9 +118,13 @@ public:
 private:
     template <TraceMode mode>
     std::optional<ExitRay> exitRay(SensorPoint sensor, AperturePoint aperture) const;
+    friend class TracedLens;
+
+    Connection solveFrom(const StopSearch::Start& start, const Eigen::Vector3d& target,
+                         AperturePoint aperture) const;
     /// Our search, and how it went; the connection's sensor point is not set.
-    std::optional<Sighting> aim(const Eigen::Vector3d& target, AperturePoint aperture,
-                                Connection& connection) const;
+    std::optional<Sighting> aim(const StopSearch::Start& start, const Eigen::Vector3d& target,
+                                AperturePoint aperture, Connection& connection) const;
     Connection solveByTwoSteps(const Eigen::Vector3d& target, AperturePoint aperture) const;
 
     const TracedLens* lens_;

@@ -13,6 +13,8 @@ namespace etendue {
 
 namespace {
 
+const Connection nothing{ConnectStatus::outOfField, {}, 0};
+
 /// In the scene, rims ignored; the derivatives are those by the slope at the stop.
 std::optional<ExitRay> rayInScene(const MonochromaticSystem& lens, const Eigen::Vector2d& a,
                                   const Eigen::Vector2d& p) {
@@ -79,39 +81,64 @@ double exchangeJacobianAtStop(const Eigen::Vector2d& slope, const Eigen::Matrix2
 
 }  // namespace
 
+std::optional<StopSearch::Start> TracedLens::startOf(const Eigen::Vector3d& target,
+                                                     AperturePoint aperture) const {
+    if (!system_.aperture.contains(aperture.mm) || !target.allFinite()) return {};
+    return stopSearch_.start(target, aperture);
+}
+
+Connection TracedLens::solve(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                             double wavelengthNm, ConnectMethod method) const {
+    if (!isInRange(wavelengthNm)) return nothing;
+    if (method == ConnectMethod::twoStep)
+        return MonochromaticLens(*this, wavelengthNm).solve(targetMm, aperture, method);
+    // Before any index is looked up: most targets are out of the field.
+    const auto start = startOf(targetMm, aperture);
+    if (!start) return nothing;
+    return MonochromaticLens(*this, wavelengthNm).solveFrom(*start, targetMm, aperture);
+}
+
+std::optional<Sighting> TracedLens::see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                                        double wavelengthNm) const {
+    if (!isInRange(wavelengthNm)) return {};
+    const auto start = startOf(targetMm, aperture);
+    if (!start) return {};
+    Connection connection;
+    return MonochromaticLens(*this, wavelengthNm).aim(*start, targetMm, aperture, connection);
+}
+
 Connection MonochromaticLens::solve(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                     ConnectMethod method) const {
-    if (!lens_->system().aperture.contains(aperture.mm) || !targetMm.allFinite())
-        return {ConnectStatus::outOfField, {}, 0};
-    if (method == ConnectMethod::twoStep) return solveByTwoSteps(targetMm, aperture);
+    if (method == ConnectMethod::newton) {
+        const auto start = lens_->startOf(targetMm, aperture);
+        return start ? solveFrom(*start, targetMm, aperture) : nothing;
+    }
+    if (!lens_->system().aperture.contains(aperture.mm) || !targetMm.allFinite()) return nothing;
+    return solveByTwoSteps(targetMm, aperture);
+}
+
+Connection MonochromaticLens::solveFrom(const StopSearch::Start& start,
+                                        const Eigen::Vector3d& target,
+                                        AperturePoint aperture) const {
     Connection connection;
-    if (const auto sighting = aim(targetMm, aperture, connection))
+    if (const auto sighting = aim(start, target, aperture, connection))
         connection.sensor = sighting->sensor;
     return connection;
 }
 
-std::optional<Sighting> MonochromaticLens::see(const Eigen::Vector3d& targetMm,
-                                               AperturePoint aperture) const {
-    if (!lens_->system().aperture.contains(aperture.mm) || !targetMm.allFinite()) return {};
-    Connection connection;
-    return aim(targetMm, aperture, connection);
-}
-
-std::optional<Sighting> MonochromaticLens::aim(const Eigen::Vector3d& target,
+std::optional<Sighting> MonochromaticLens::aim(const StopSearch::Start& start,
+                                               const Eigen::Vector3d& target,
                                                AperturePoint aperture,
                                                Connection& connection) const {
     const MonochromaticSystem view = system();
-    connection.status = ConnectStatus::outOfField;
-    const StopSearch& search = lens_->stopSearch();
-    const std::optional<StopSearch::Start> start = search.start(target, aperture);
-    if (!start) return {};
+    const StopSearch& search = lens_->stopSearch_;
     const Eigen::Vector2d& paraxial = lens_->paraxialStopMap().bySlope;
     const double unfolded = paraxial.x() * paraxial.y();  // its sign is that of rays' turning by p
-    double reach = start->reach;
+    double reach = start.reach;
     bool metFold = false;
     const auto exit = [&](const Eigen::Vector2d& p,
                           double apertureShare) -> std::optional<ExitRay> {
-        if (!((p - start->slope).norm() <= reach)) return {};
+        if (!((p - start.slope).norm() <= reach)) return {};
         const std::optional<ExitRay> ray = rayInScene(view, apertureShare * aperture.mm, p);
         if (!ray || turning(*ray) * unfolded > 0.0) return ray;
         metFold = true;
@@ -119,11 +146,9 @@ std::optional<Sighting> MonochromaticLens::aim(const Eigen::Vector3d& target,
     };
     constexpr double steadyTurn = 1.0;  // of the slope: beyond it no lens turns rays evenly
     TargetSolver solver(exit, 2.0 * steadyTurn);
-    std::optional<Aimed> end = solver.newton(target, start->slope);
-    // A near target may be met by a second ray besides one that a rim stops; and a search that has
-    // come to where the lens folds has to be led around it.
-    const bool isElsewhere = std::isinf(reach) && !(end && search.mayPass(aperture, end->sensor));
-    if (isElsewhere || (!end && metFold)) {
+    std::optional<Aimed> end = solver.newton(target, start.slope);
+    // A search that has come to where the lens folds has to be led around it.
+    if (!end && metFold) {
         reach = std::numeric_limits<double>::infinity();
         end = solver.follow(target);
     }

@@ -42,6 +42,18 @@ Vector3<double> valueOf(const Vector3<T>& a) {
     return {valueOf(a.x), valueOf(a.y), valueOf(a.z)};
 }
 
+/// By the variable with number `index`.
+template <int N>
+Vector3<double> partialsOf(const Vector3<Dual<N>>& a, std::size_t index) {
+    return {a.x.partials[index], a.y.partials[index], a.z.partials[index]};
+}
+template <int N>
+void setPartials(Vector3<Dual<N>>& a, std::size_t index, const Vector3<double>& partials) {
+    a.x.partials[index] = partials.x;
+    a.y.partials[index] = partials.y;
+    a.z.partials[index] = partials.z;
+}
+
 /// Rows x, y, z.
 inline Eigen::Matrix<double, 3, 2> partials(const Vector3<Dual<2>>& a) {
     Eigen::Matrix<double, 3, 2> result;

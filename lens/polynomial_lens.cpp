@@ -91,7 +91,7 @@ std::optional<Sighting> PolynomialLens::see(const Eigen::Vector3d& targetMm, Ape
                                             double wavelengthNm) const {
     if (!canSee(targetMm, aperture, wavelengthNm)) return {};
     Connection connection;
-    // Mostly the first guess is as near, so that one evaluation of the fit does.
+    // Where the first guess is as near, as in most of a lens stopped down, one evaluation does.
     constexpr double toleranceRadians = 2e-5;
     const std::optional<Aimed> end =
         aim(targetMm, aperture, wavelengthNm, toleranceRadians, connection);

@@ -20,7 +20,8 @@ std::span<const FitRay> enoughOf(std::span<const FitRay> training) {
 /// `targets`: a vector for each entry of `tolerances`.
 SparsePolynomial fitVectors(std::span<const PolynomialInput> inputs, const Eigen::MatrixXd& targets,
                             const Eigen::VectorXd& tolerances, bool isAxial) {
-    // Enough for a first guess within 2e-5 rad of most targets, so that the search can end there.
+    // A first guess within 2e-5 rad ends the search: this many are near enough for all the targets
+    // of many lenses, and for some of a fisheye wide open.
     // Between mirror planes a term is of one component, and there are more of them.
     const int degree = isAxial ? 11 : 13, terms = isAxial ? 48 : 96;
     const PolynomialBasis basis = isAxial ? PolynomialBasis::axial : PolynomialBasis::twoPlane;

@@ -112,8 +112,8 @@ inline TraceStatus statusAt(const OpticalSystem& system, std::size_t index, doub
 /// Carries `ray`, whose direction has unit length, across surface `index`; at the end its origin
 /// lies there. False: it does not pass, and `passage` says why.
 template <Heading heading, TraceMode mode, class T>
-[[gnu::flatten]] bool crossSurface(const MonochromaticSystem& lens, std::size_t index, LensRay<T>& ray,
-                  Passage& passage) {
+[[gnu::flatten]] bool crossSurface(const MonochromaticSystem& lens, std::size_t index,
+                                   LensRay<T>& ray, Passage& passage) {
     const auto stopped = [&](TraceStatus status) {
         passage.status = status;
         passage.surface = index;

@@ -27,7 +27,7 @@ public:
 private:
     StopRegion region_;
     StopStart start_;
-    double nearestMm_;  // of targets far enough for first guesses to be trusted
+    double nearestMm_;       // of targets far enough for first guesses to be trusted
     double reach_, beyond_;  // where the rays to those are: of StopStart::Guess
 };
 

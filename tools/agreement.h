@@ -16,10 +16,10 @@
 namespace etendue {
 
 struct AgreementSettings {
-    int seeds = 16;                 // pictures of each estimator
-    std::optional<int> samples;     // per pixel of each picture; else as many as time allows
-    double seconds = 20.0;          // for one comparison, about
-    bool reckonsTime = false;       // by a table and not by the clock: always the same samples
+    int seeds = 16;              // pictures of each estimator
+    std::optional<int> samples;  // per pixel of each picture; else as many as time allows
+    double seconds = 20.0;       // for one comparison, about
+    bool reckonsTime = false;    // by a table and not by the clock: always the same samples
     std::optional<Sampler> sampler = Sampler::sobol;  // none: the scene's
     bool keepsByChance = false;   // compares what path tracing meets only by chance, too
     double bound = 0.002;         // of the relative bias

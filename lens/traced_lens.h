@@ -56,8 +56,8 @@ public:
     /// The derivatives are those of a ray that leaves within the search's tolerance of it.
     std::optional<Sighting> see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                 double wavelengthNm) const override;
-    /// connect(), and how it went. A lens without a domain has no end of its field: outOfField says
-    /// that the wavelength, the aperture point or the target is none for this lens.
+    /// connect(), and how it went. outOfField says that the wavelength, the aperture point or the
+    /// target is none for this lens, or that no ray that passes its rims comes near the target.
     Connection solve(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm,
                      ConnectMethod method = ConnectMethod::newton) const;
     AperturePoint sampleAperture(Eigen::Vector2d u) const override;

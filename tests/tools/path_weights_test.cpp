@@ -193,11 +193,15 @@ private:
             apertureUniforms_.push_back(lightRandom.next2());
         nextEvents_.clear();
         const std::vector<PathVertex>& camera = sample_.cameraPath.vertices;
+        if (camera.empty()) return;
+        // Where the walk leaves off the draws of next-event estimation begin.
+        CameraSample start = drawCameraSample(view_, id_);
+        CameraSubpath walked;
+        walkFromCamera(view_.scene, start, loaded_.estimator, walked);
         for (std::size_t t = 2;
              t <= camera.size() && static_cast<int>(t) <= loaded_.estimator.maxDepth; ++t) {
-            RandomStream& random = sample_.camera->random;
-            const float uLight = random.next();
-            const Vec2 u = random.next2();
+            const float uLight = start.random.next();
+            const Vec2 u = start.random.next2();
             NextEvent event;
             if (const auto choice = view_.scene.lights().sample(uLight))
                 if (const auto drawn =

@@ -1,7 +1,6 @@
 #include "statistics/picture_comparison.h"
 
 #include <algorithm>
-#include <map>
 
 #include "statistics/statistics.h"
 
@@ -9,33 +8,34 @@ namespace etendue {
 
 namespace {
 
-/// Of each tile of one picture, and each of R, G, B.
-std::vector<double> tileMeans(const Picture& pixels, int width, int tileSize) {
-    const int tilesAcross = (width + tileSize - 1) / tileSize;
-    std::map<std::pair<int, std::size_t>, std::pair<double, int>> sums;
-    for (std::size_t i = 0; i < pixels.size() / 3; ++i) {
-        const int x = static_cast<int>(i) % width, y = static_cast<int>(i) / width;
-        for (std::size_t c = 0; c < 3; ++c) {
-            auto& [sum, count] = sums[{y / tileSize * tilesAcross + x / tileSize, c}];
-            sum += static_cast<double>(pixels[3 * i + c]);
-            ++count;
-        }
-    }
-    std::vector<double> means;
-    for (const auto& [tile, entry] : sums) means.push_back(entry.first / entry.second);
-    return means;
+/// Part of a picture, in one colour.
+struct Tile {
+    int x0, y0, x1, y1;
+    std::size_t color;
+    int pixels() const { return (x1 - x0) * (y1 - y0); }
+};
+
+std::vector<Tile> tilesOf(int width, int height, int tileSize) {
+    std::vector<Tile> tiles;
+    for (int y = 0; y < height; y += tileSize)
+        for (int x = 0; x < width; x += tileSize)
+            for (std::size_t color = 0; color < 3; ++color)
+                tiles.push_back(
+                    {x, y, std::min(x + tileSize, width), std::min(y + tileSize, height), color});
+    return tiles;
 }
 
-/// The same, each with its means in all the pictures.
-std::vector<std::vector<double>> byTile(const std::vector<Picture>& pictures, int width,
-                                        int tileSize) {
-    std::vector<std::vector<double>> result;
-    for (const Picture& p : pictures) {
-        const std::vector<double> means = tileMeans(p, width, tileSize);
-        result.resize(means.size());
-        for (std::size_t i = 0; i < means.size(); ++i) result[i].push_back(means[i]);
+std::vector<double> meansIn(const Tile& tile, const std::vector<Picture>& pictures, int width) {
+    std::vector<double> means;
+    for (const Picture& picture : pictures) {
+        double sum = 0.0;
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; ++x)
+                sum += static_cast<double>(
+                    picture[3 * static_cast<std::size_t>(y * width + x) + tile.color]);
+        means.push_back(sum / tile.pixels());
     }
-    return result;
+    return means;
 }
 
 }  // namespace
@@ -50,16 +50,23 @@ std::vector<double> meansOf(const std::vector<Picture>& pictures) {
     return means;
 }
 
+double welchP(std::span<const double> a, std::span<const double> b, int /*pixels*/) {
+    return welchTest(a, b).pValue;
+}
+
 PictureComparison comparePictures(const std::vector<Picture>& a, const std::vector<Picture>& b,
-                                  int width, int tileSize, std::size_t comparisons) {
-    const auto tilesA = byTile(a, width, tileSize), tilesB = byTile(b, width, tileSize);
+                                  int width, int tileSize, std::size_t comparisons,
+                                  const TestOfMeans& pOf) {
+    const int pixels = static_cast<int>(a.front().size() / 3);
+    const std::vector<Tile> tiles = tilesOf(width, pixels / width, tileSize);
     const std::vector<double> wholeA = meansOf(a), wholeB = meansOf(b);
-    const WelchResult whole = welchTest(wholeA, wholeB);
     PictureComparison result;
-    result.level = sidakLevel(0.01, (tilesA.size() + 1) * comparisons);
-    result.smallestP = whole.pValue;
-    for (std::size_t i = 0; i < tilesA.size(); ++i)
-        result.smallestP = std::min(result.smallestP, welchTest(tilesA[i], tilesB[i]).pValue);
+    result.level = sidakLevel(0.01, (tiles.size() + 1) * comparisons);
+    result.smallestP = pOf(wholeA, wholeB, pixels);
+    for (const Tile& tile : tiles)
+        result.smallestP = std::min(
+            result.smallestP, pOf(meansIn(tile, a, width), meansIn(tile, b, width), tile.pixels()));
+    const WelchResult whole = welchTest(wholeA, wholeB);
     const double mean = summarize(wholeB).mean;
     result.relativeBias = whole.difference / mean;
     if (whole.standardError > 0.0)

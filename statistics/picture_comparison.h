@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <vector>
 
 namespace etendue {
@@ -25,11 +27,18 @@ struct PictureComparison {
     }
 };
 
+/// Two-sided p of equal means, each the mean of `pixels` pixels of one picture.
+using TestOfMeans =
+    std::function<double(std::span<const double> a, std::span<const double> b, int pixels)>;
+/// By Welch's t.
+double welchP(std::span<const double> a, std::span<const double> b, int pixels);
+
 /// Each picture of `a` and `b` was rendered with a seed of its own; at least two of either.
 /// `width`, `tileSize` in pixels. `comparisons`: how many such comparisons share the chance of 1 %
 /// of any false alarm.
 PictureComparison comparePictures(const std::vector<Picture>& a, const std::vector<Picture>& b,
-                                  int width, int tileSize, std::size_t comparisons = 1);
+                                  int width, int tileSize, std::size_t comparisons = 1,
+                                  const TestOfMeans& pOf = welchP);
 
 /// Mean brightness of each picture.
 std::vector<double> meansOf(const std::vector<Picture>& pictures);

@@ -54,12 +54,10 @@ int main(int argc, char** argv) {
             {"film.width=" + pixels, "film.height=" + pixels}, 1, fitCacheDirectory()};
         options.camera = project / "scenes/cameras" / (camera + ".toml");
         // RGB like the others: what the lens itself costs. Dispersion is timed in a row of its own.
-        const bool isGlass = camera != "thin-lens" && camera != "pinhole";
-        const bool isDispersive = camera.ends_with("+");
-        if (isDispersive)
+        options.disperses = camera.ends_with("+");
+        if (options.disperses)
             options.camera =
                 project / "scenes/cameras" / (camera.substr(0, camera.size() - 1) + ".toml");
-        if (isGlass && !isDispersive) options.overrides.push_back("camera.dispersion=false");
         scenes.push_back(loadScene(project / "scenes/cornell-box/scene.toml", options));
     }
     fmt::print("{:<22}{:>10}{:>16}{:>22}\n", "camera", "estimator", "ns per sample",

@@ -94,7 +94,7 @@ void loadCamera(const ConfigTable& table, const LoadOptions& options, LoadingSce
     std::shared_ptr<const LensModel> lens;
     if (table.has("lens")) {
         if (table.has("model")) table.fail("model", "give either model or lens");
-        settings.isDispersive = table.boolean("dispersion", true);
+        settings.isDispersive = table.boolean("dispersion", options.disperses);
         lens = loadLens(table, settings, options, loading, loaded);
     } else {
         const std::string model = table.choice("model", {"pinhole", "thin-lens"}, "pinhole");

@@ -205,9 +205,7 @@ private:
             bar.update(fmt::format("{}: {}", title, stage), 0.0);
         };
         options.camera = camera.file;
-        LoadedScene loaded = loadScene(scene.file, options);
-        if (camera.isDispersive || !loaded.camera->settings().isDispersive) return loaded;
-        options.overrides.push_back("camera.dispersion=false");
+        options.disperses = camera.isDispersive;
         return loadScene(scene.file, options);
     }
 

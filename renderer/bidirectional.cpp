@@ -20,22 +20,15 @@ public:
         result.firstHit.reset();
         const SpectralSample color = drawWavelengths(view, id);
         static thread_local BidirectionalMemory memory;
-        memory.light.vertices.clear();
         BidirectionalSample sample{view, color, settings_, techniques_, memory, result};
-        // The last light path is the one that the camera's is connected to.
-        for (int i = 0; i < lightPathsPerSample(); ++i) {
-            RandomStream random = lightPathRandom(view, id, i, settings_.lightPaths);
-            walkFromLight(view.scene, color.wavelengths, settings_, random, memory.light);
-            connectToLens(sample, random);
-        }
+        takeLightPaths(sample, id, lightPathsPerSample(), [](int) {});
         if (!request.ownPixel) return;
         if (!needsCamera_ && !request.firstHit) return;
         CameraSample camera = drawCameraSample(view, id);
         if (!camera.ray) return;
         if (request.firstHit) result.firstHit = firstHitOf(view.scene, *camera.ray);
         if (!needsCamera_) return;
-        walkFromCamera(view.scene, camera, settings_, memory.camera);
-        connectSubpaths(sample, camera);
+        takeCameraPath(sample, camera);
     }
 
     int lightPathsPerSample() const override { return needsLight_ ? settings_.lightPaths : 0; }

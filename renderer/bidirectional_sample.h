@@ -67,4 +67,25 @@ void connectToLens(BidirectionalSample& sample, RandomStream& random);
 /// All techniques with t ≥ 2, of its camera path, begun by `camera`, and its light path.
 void connectSubpaths(BidirectionalSample& sample, CameraSample& camera);
 
+/// A sample's light paths, each walked and connected to the lens; then afterEach(its number). The
+/// last is left for the camera's to be connected to.
+template <class AfterEach>
+void takeLightPaths(BidirectionalSample& sample, SampleId id, int count,
+                    const AfterEach& afterEach) {
+    sample.memory.light.vertices.clear();
+    for (int i = 0; i < count; ++i) {
+        RandomStream random = lightPathRandom(sample.view, id, i, count);
+        walkFromLight(sample.view.scene, sample.color.wavelengths, sample.settings, random,
+                      sample.memory.light);
+        connectToLens(sample, random);
+        afterEach(i);
+    }
+}
+
+/// Its camera path, begun by the ray of `camera`: walked and connected.
+inline void takeCameraPath(BidirectionalSample& sample, CameraSample& camera) {
+    walkFromCamera(sample.view.scene, camera, sample.settings, sample.memory.camera);
+    connectSubpaths(sample, camera);
+}
+
 }  // namespace etendue

@@ -188,22 +188,15 @@ void retraceBidirectional(const View& view, const EstimatorSettings& settings, S
         settings.kind == "lt" ? TechniqueSet::lightTracing() : settings.techniques;
     const SpectralSample color = drawWavelengths(view, id);
     found.contributions.clear();
-    memory.light.vertices.clear();
     std::swap(memory.camera, result.cameraPath);
     BidirectionalSample sample{view, color, settings, techniques, memory, found};
     result.lightPaths.resize(static_cast<std::size_t>(lightPaths));
-    for (int i = 0; i < lightPaths; ++i) {
-        RandomStream random = lightPathRandom(view, id, i, lightPaths);
-        walkFromLight(view.scene, color.wavelengths, settings, random, memory.light);
-        connectToLens(sample, random);
+    takeLightPaths(sample, id, lightPaths, [&](int i) {
         if (i + 1 < lightPaths) result.lightPaths[static_cast<std::size_t>(i)] = memory.light;
-    }
+    });
     if (techniques.needsCameraWalk(settings.maxDepth)) {
         result.camera = drawCameraSample(view, id);
-        if (result.camera->ray) {
-            walkFromCamera(view.scene, *result.camera, settings, memory.camera);
-            connectSubpaths(sample, *result.camera);
-        }
+        if (result.camera->ray) takeCameraPath(sample, *result.camera);
     }
     std::swap(memory.camera, result.cameraPath);
     if (lightPaths > 0) std::swap(result.lightPaths.back(), memory.light);

@@ -6,11 +6,10 @@
 #include "renderer/parallel.h"
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
+#include "statistics/picture_comparison.h"
 #include "statistics/statistics.h"
 
 namespace etendue {
-
-using Picture = std::vector<float>;
 
 struct PictureNoise {
     std::vector<Picture> pictures;
@@ -35,10 +34,8 @@ inline PictureNoise measureNoise(const LoadedScene& loaded, std::uint32_t sample
                    Filter(loaded.film.filter, loaded.film.filterRadius), film, settings, {})
                 .seconds;
         result.pictures.push_back(film.channels().front().pixels);
-        double sum = 0.0;
-        for (const float v : result.pictures.back()) sum += static_cast<double>(v);
-        result.means.push_back(sum / static_cast<double>(result.pictures.back().size()));
     }
+    result.means = meansOf(result.pictures);
     const std::size_t pixels = result.pictures.front().size();
     for (std::size_t i = 0; i < pixels; ++i) {
         std::vector<double> values;

@@ -38,10 +38,7 @@ inline PictureMeans pictureMeans(const LoadedScene& loaded, const EstimatorSetti
             render(*loaded.scene, *loaded.camera, *made, filter, film, settings, {});
         result.badSamples += done.badSampleCount;
         result.refusedRays += done.refusedRays;
-        double sum = 0.0;
-        const std::vector<float> pixels = film.channels().front().pixels;
-        for (const float v : pixels) sum += static_cast<double>(v);
-        result.means.push_back(sum / static_cast<double>(pixels.size()));
+        result.means.push_back(meansOf({film.channels().front().pixels}).front());
     }
     return result;
 }

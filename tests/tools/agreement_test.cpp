@@ -218,12 +218,7 @@ TEST_CASE("Agreement: gives up when asked to") {
 }
 
 TEST_CASE("Agreement: two black pictures have nothing in common") {
-    const LoadedScene loaded = sceneFromText(everyMaterialFrame + R"(
-[[material]]
-name = "mirror"
-type = "conductor"
-metal = "silver"
-roughness = 0
+    const LoadedScene loaded = sceneFromText(everyMaterialFrame + silverMirror + R"(
 [[mesh]]
 shape = "rectangle"
 material = "mirror"

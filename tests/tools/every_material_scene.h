@@ -43,8 +43,16 @@ max_depth = 6
 /// Makes a spectral scene of it, with a glass that parts the colours.
 inline const std::string dispersiveGlass = "material.glass.abbe_number=30";
 
+inline const std::string silverMirror = R"(
+[[material]]
+name = "mirror"
+type = "conductor"
+metal = "silver"
+roughness = 0
+)";
+
 /// Smooth plastic, matte, glass, a mirror and rough metal.
-inline const std::string everyMaterialRoom = R"(
+inline const std::string everyMaterialRoom = silverMirror + R"(
 [[material]]
 name = "floor"
 type = "plastic"
@@ -56,11 +64,6 @@ color = [0.4, 0.5, 0.7]
 [[material]]
 name = "glass"
 type = "dielectric"
-[[material]]
-name = "mirror"
-type = "conductor"
-metal = "silver"
-roughness = 0
 [[material]]
 name = "gold"
 type = "conductor"

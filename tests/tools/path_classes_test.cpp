@@ -136,12 +136,7 @@ TEST_CASE("Path classes: light that the lens does not find by connecting is left
 
 TEST_CASE("Path classes: a path that belongs to two of them is left out if either is") {
     // A wall of mirror, and behind the camera a floor and a wall that are seen in it and lit by it.
-    const LoadedScene loaded = sceneFromText(everyMaterialFrame + R"(
-[[material]]
-name = "mirror"
-type = "conductor"
-metal = "silver"
-roughness = 0
+    const LoadedScene loaded = sceneFromText(everyMaterialFrame + silverMirror + R"(
 [[mesh]]
 shape = "rectangle"
 material = "mirror"
@@ -171,12 +166,7 @@ intensity = [30, 30, 30]
 
 TEST_CASE("Path classes: lamps met by chance are left out of all three, and no others") {
     // A wall of mirror behind a matte floor, and a lamp that the mirror throws on the floor.
-    const std::string scene = everyMaterialFrame + R"(
-[[material]]
-name = "mirror"
-type = "conductor"
-metal = "silver"
-roughness = 0
+    const std::string scene = everyMaterialFrame + silverMirror + R"(
 [[mesh]]
 shape = "rectangle"
 material = "mirror"

@@ -160,7 +160,7 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
         const std::uint32_t first = result.samples;
         const std::uint32_t count = passSize(first, settings.samples, result.seconds,
                                              settings.timeLimitSeconds, mostSamples);
-        takePass(recorder, tiles, first, count, settings.threads);
+        takePass(recorder, tiles, settings.firstSample + first, count, settings.threads);
         film.addLightPaths(count * framePixels * lightPaths);
         film.addSamples(count);
         result.samples += count;

@@ -19,7 +19,8 @@ namespace etendue {
 inline constexpr std::uint32_t unlimitedSamples = 1u << 30;
 
 struct RenderSettings {
-    std::uint32_t samples = 64;  // per pixel
+    std::uint32_t samples = 64;     // per pixel
+    std::uint32_t firstSample = 0;  // their indices: a render goes on where another has ended
     std::uint64_t seed = 0;
     Sampler sampler = Sampler::independent;
     int threads = 1;

@@ -47,12 +47,28 @@ bool Json::isPlain() const {
     return !std::holds_alternative<Array>(value_) && !std::holds_alternative<Object>(value_);
 }
 
-std::string Json::text(int depth) const {
+std::string Json::plainText() const {
     if (const auto* flag = std::get_if<bool>(&value_)) return *flag ? "true" : "false";
     if (const auto* number = std::get_if<double>(&value_))
         return std::isfinite(*number) ? fmt::format("{}", *number) : "null";
     if (const auto* whole = std::get_if<std::int64_t>(&value_)) return fmt::format("{}", *whole);
-    if (const auto* string = std::get_if<std::string>(&value_)) return quoted(*string);
+    return quoted(std::get<std::string>(value_));
+}
+
+std::string Json::line() const {
+    if (isPlain()) return plainText();
+    std::string result;
+    if (const auto* items = std::get_if<Array>(&value_)) {
+        for (const Json& item : *items) result += (result.empty() ? "" : ", ") + item.line();
+        return "[" + result + "]";
+    }
+    for (const auto& [key, value] : std::get<Object>(value_))
+        result += (result.empty() ? "" : ", ") + quoted(key) + ": " + value.line();
+    return "{" + result + "}";
+}
+
+std::string Json::text(int depth) const {
+    if (isPlain()) return plainText();
     std::string result;
     if (const auto* items = std::get_if<Array>(&value_)) {
         const bool onOneLine = std::ranges::all_of(*items, &Json::isPlain);

@@ -1,4 +1,4 @@
-// The command line. CLI11 is known to this file, lens_command.cpp and option_checks.h alone.
+// The command line.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,12 +11,12 @@
 #include <stdexcept>
 
 #include "renderer/estimator.h"
-#include "tools/bench_command.h"
-#include "tools/contender.h"
+#include "tools/bench_options.h"
 #include "tools/lens_command.h"
 #include "tools/option_checks.h"
 #include "tools/render_command.h"
 #include "tools/replay_command.h"
+#include "tools/scene_options.h"
 #include "tools/version.h"
 
 namespace etendue {
@@ -43,40 +43,6 @@ std::string joinArguments(int argc, char** argv) {
     std::string line = "etendue";
     for (int i = 1; i < argc; ++i) line += fmt::format(" {}", argv[i]);
     return line;
-}
-
-void addCamera(CLI::App* command, std::filesystem::path& camera) {
-    command
-        ->add_option("--camera", camera,
-                     "Look through this file's [camera], such as scenes/cameras/fisheye.toml")
-        ->type_name("FILE");
-}
-
-void addOverrides(CLI::App* command, std::vector<std::string>& overrides) {
-    command->add_option("-s,--set", overrides, "Override any key of the scene; may be repeated")
-        ->allow_extra_args(false)
-        ->type_name("KEY=VALUE");
-}
-
-void addSeed(CLI::App* command, std::uint64_t& seed) {
-    command->add_option("--seed", seed, "Of the random numbers; default 0")
-        ->check(numberThat<std::uint64_t>([](std::uint64_t) { return true; },
-                                          "a whole number from 0 to 2^64 - 1"))
-        ->type_name("N");
-}
-
-void addThreads(CLI::App* command, std::optional<int>& threads) {
-    command->add_option("--threads", threads, "Default: one for each processor")
-        ->check(CLI::Range(1, 1024).description(""))
-        ->type_name("N");
-}
-
-void addSize(CLI::App* command, std::vector<int>& size, const char* description) {
-    command->add_option("--size", size, description)
-        ->delimiter(',')
-        ->expected(2)
-        ->check(CLI::Range(1, 32768).description(""))
-        ->type_name("W,H");
 }
 
 void addRender(CLI::App& app, RenderCommand& c) {
@@ -174,81 +140,6 @@ void addReplay(CLI::App& app, ReplayCommand& c) {
     replay->add_flag("--json", c.asJson, "Print JSON");
 }
 
-void addAgreement(CLI::App& bench, AgreementCommand& c) {
-    const CLI::Validator contenders(
-        [](const std::string& text) {
-            return parseContender(text) ? "" : fmt::format("no estimator is called \"{}\"", text);
-        },
-        "");
-    CLI::App* agreement = bench.add_subcommand(
-        "agreement",
-        "Test whether the estimators make one picture, scene by scene, camera by "
-        "camera (docs/agreement.md)");
-    agreement
-        ->add_option("scene", c.scenes, "Scene files, or names in --scenes; default: all there")
-        ->type_name("SCENE");
-    agreement->add_option("--scenes", c.folder, "Folder of scenes and of cameras/; default: scenes")
-        ->type_name("DIR");
-    agreement
-        ->add_option("--cameras", c.cameras,
-                     "Names in cameras/, files, own: the scene's; default: pinhole,thin-lens,"
-                     "double-gauss,double-gauss+dispersion,double-gauss-traced,fisheye,"
-                     "anamorphic")
-        ->delimiter(',')
-        ->allow_extra_args(false)  // scenes may follow
-        ->type_name("LIST");
-    agreement
-        ->add_option("--estimators", c.estimators,
-                     "To test, or techniques such as bdpt:s2t1; default: lt,bdpt, and lt against "
-                     "bdpt")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(contenders)
-        ->type_name("LIST");
-    agreement->add_option("--against", c.reference, "By which estimator; default: pt")
-        ->check(contenders)
-        ->type_name("NAME");
-    agreement
-        ->add_option("--techniques", c.techniqueEdges,
-                     "Test each technique of bdpt alone, of paths of up to so many edges")
-        ->check(CLI::Range(1, 16).description(""))
-        ->type_name("N");
-    agreement
-        ->add_option("--sampler", c.sampler,
-                     "sobol, independent, or scene: its own; default: sobol")
-        ->check(CLI::IsMember({"sobol", "independent", "scene"}).description(""))
-        ->type_name("NAME");
-    agreement->add_flag("--by-chance", c.keepsByChance,
-                        "Compare what an estimator meets only by chance, too");
-    agreement->add_option("--seeds", c.seeds, "Pictures of either estimator; default: 16")
-        ->check(CLI::Range(2, 10000).description(""))
-        ->type_name("N");
-    agreement
-        ->add_option("--samples", c.samples,
-                     "Per pixel of each picture; default: as many as the bound asks for")
-        ->check(CLI::Range(1, 1 << 24).description(""))
-        ->type_name("N");
-    agreement->add_option("--time", c.seconds, "At most about so long a comparison; default: 20")
-        ->check(positiveNumber())
-        ->type_name("SECONDS");
-    agreement->add_flag("--reckon", c.reckonsTime,
-                        "Reckon the time by a table: the same samples in every run");
-    agreement
-        ->add_option("--must-agree", c.mustAgree,
-                     "Fail if fewer comparisons are within the bound; default: 0")
-        ->check(CLI::Range(0, 1 << 24).description(""))
-        ->type_name("N");
-    agreement
-        ->add_option("--bound", c.boundPercent, "Of the bias that counts as none; default: 0.2")
-        ->check(positiveNumber())
-        ->type_name("PERCENT");
-    addSize(agreement, c.size, "Pixels of the pictures; default: 48,32");
-    addSeed(agreement, c.firstSeed);
-    addThreads(agreement, c.threads);
-    addOverrides(agreement, c.overrides);
-    agreement->add_flag("--json", c.asJson, "Print JSON");
-}
-
 ExitCode run(int argc, char** argv) {
     CLI::App app(
         "Étendue renders scenes through real photographic lenses, by unbiased light transport.",
@@ -264,20 +155,16 @@ ExitCode run(int argc, char** argv) {
     addCheck(app, check);
     ReplayCommand replay;
     addReplay(app, replay);
-    CLI::App* bench = app.add_subcommand("bench", "Measure the renderer against itself");
-    bench->require_subcommand(1);
-    AgreementCommand agreement;
-    addAgreement(*bench, agreement);
-    std::function<ExitCode()> chosenLensCommand;
-    addLensCommands(app, chosenLensCommand);
+    std::function<ExitCode()> chosen;  // of the commands that have subcommands
+    addBenchCommands(app, chosen);
+    addLensCommands(app, chosen);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         const int code = app.exit(error);
         return code == 0 ? ExitCode::success : ExitCode::usage;
     }
-    if (chosenLensCommand) return chosenLensCommand();
-    if (app.got_subcommand(bench)) return runAgreement(agreement);
+    if (chosen) return chosen();
     if (app.got_subcommand("replay")) return runReplay(replay);
     return app.got_subcommand("render") ? runRender(render) : runCheck(check);
 }

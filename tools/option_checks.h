@@ -1,4 +1,4 @@
-// Checks of options that are numbers. With main.cpp and lens_command.cpp what knows CLI11.
+// Checks of options that are numbers.
 #pragma once
 
 #include <fmt/format.h>

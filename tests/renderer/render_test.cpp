@@ -116,6 +116,29 @@ TEST_CASE("Render: …and for any division into passes") {
     CHECK(film.channels().front().pixels == whole);
 }
 
+TEST_CASE("Render: it goes on where another has ended, to the same bits") {
+    for (const char* sampler : {"independent", "sobol"}) {
+        CAPTURE(std::string(sampler));
+        const LoadedScene loaded = sceneFromText(
+            mixedScene, {"estimator.kind=bdpt", std::string("estimator.sampler=") + sampler});
+        Film whole({48, 32, 0, 0, 48, 32}), parts({48, 32, 0, 0, 48, 32});
+        const Filter filter(loaded.film.filter, loaded.film.filterRadius);
+        const auto estimator = makeEstimator(loaded.estimator);
+        const auto take = [&](Film& film, std::uint32_t first, std::uint32_t count) {
+            RenderSettings settings;
+            settings.firstSample = first;
+            settings.samples = count;
+            settings.sampler = loaded.sampler;
+            render(*loaded.scene, *loaded.camera, *estimator, filter, film, settings, {});
+        };
+        take(whole, 0, 6);
+        take(parts, 0, 1);
+        take(parts, 1, 3);
+        take(parts, 4, 2);
+        CHECK(parts.channels().front().pixels == whole.channels().front().pixels);
+    }
+}
+
 TEST_CASE("Render: a crop is the window of the full frame, bit for bit") {
     for (const char* kind : {"pt", "lt", "bdpt"}) {
         CAPTURE(std::string(kind));

@@ -26,3 +26,10 @@ TEST_CASE("Json: numbers come back as they were") {
     const double number = 0.1 + 0.2;
     CHECK(std::stod(Json(number).text()) == number);
 }
+
+TEST_CASE("Json: a line holds all of it") {
+    const Json json = Json::object({{"a", Json::numbers({1.0, 2.0})},
+                                    {"b", Json::object({{"c", nullptr}, {"d", "x\ny"}})},
+                                    {"e", std::optional<double>()}});
+    CHECK(json.line() == R"({"a": [1, 2], "b": {"c": null, "d": "x\ny"}, "e": null})");
+}

@@ -1,0 +1,106 @@
+#include "tools/bench_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "tools/bench_command.h"
+#include "tools/contender.h"
+#include "tools/option_checks.h"
+#include "tools/scene_options.h"
+
+namespace etendue {
+
+namespace {
+
+using Chosen = std::function<ExitCode()>;
+
+void addAgreement(CLI::App& bench, Chosen& chosen) {
+    const auto command = std::make_shared<AgreementCommand>();
+    AgreementCommand& c = *command;
+    const CLI::Validator contenders(
+        [](const std::string& text) {
+            return parseContender(text) ? "" : fmt::format("no estimator is called \"{}\"", text);
+        },
+        "");
+    CLI::App* agreement = bench.add_subcommand(
+        "agreement",
+        "Test whether the estimators make one picture, scene by scene, camera by "
+        "camera (docs/agreement.md)");
+    agreement
+        ->add_option("scene", c.scenes, "Scene files, or names in --scenes; default: all there")
+        ->type_name("SCENE");
+    agreement->add_option("--scenes", c.folder, "Folder of scenes and of cameras/; default: scenes")
+        ->type_name("DIR");
+    agreement
+        ->add_option("--cameras", c.cameras,
+                     "Names in cameras/, files, own: the scene's; default: pinhole,thin-lens,"
+                     "double-gauss,double-gauss+dispersion,double-gauss-traced,fisheye,"
+                     "anamorphic")
+        ->delimiter(',')
+        ->allow_extra_args(false)  // scenes may follow
+        ->type_name("LIST");
+    agreement
+        ->add_option("--estimators", c.estimators,
+                     "To test, or techniques such as bdpt:s2t1; default: lt,bdpt, and lt against "
+                     "bdpt")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(contenders)
+        ->type_name("LIST");
+    agreement->add_option("--against", c.reference, "By which estimator; default: pt")
+        ->check(contenders)
+        ->type_name("NAME");
+    agreement
+        ->add_option("--techniques", c.techniqueEdges,
+                     "Test each technique of bdpt alone, of paths of up to so many edges")
+        ->check(CLI::Range(1, 16).description(""))
+        ->type_name("N");
+    agreement
+        ->add_option("--sampler", c.sampler,
+                     "sobol, independent, or scene: its own; default: sobol")
+        ->check(CLI::IsMember({"sobol", "independent", "scene"}).description(""))
+        ->type_name("NAME");
+    agreement->add_flag("--by-chance", c.keepsByChance,
+                        "Compare what an estimator meets only by chance, too");
+    agreement->add_option("--seeds", c.seeds, "Pictures of either estimator; default: 16")
+        ->check(CLI::Range(2, 10000).description(""))
+        ->type_name("N");
+    agreement
+        ->add_option("--samples", c.samples,
+                     "Per pixel of each picture; default: as many as the bound asks for")
+        ->check(CLI::Range(1, 1 << 24).description(""))
+        ->type_name("N");
+    agreement->add_option("--time", c.seconds, "At most about so long a comparison; default: 20")
+        ->check(positiveNumber())
+        ->type_name("SECONDS");
+    agreement->add_flag("--reckon", c.reckonsTime,
+                        "Reckon the time by a table: the same samples in every run");
+    agreement
+        ->add_option("--must-agree", c.mustAgree,
+                     "Fail if fewer comparisons are within the bound; default: 0")
+        ->check(CLI::Range(0, 1 << 24).description(""))
+        ->type_name("N");
+    agreement
+        ->add_option("--bound", c.boundPercent, "Of the bias that counts as none; default: 0.2")
+        ->check(positiveNumber())
+        ->type_name("PERCENT");
+    addSize(agreement, c.size, "Pixels of the pictures; default: 48,32");
+    addSeed(agreement, c.firstSeed);
+    addThreads(agreement, c.threads);
+    addOverrides(agreement, c.overrides);
+    agreement->add_flag("--json", c.asJson, "Print JSON");
+    agreement->callback(
+        [&chosen, command] { chosen = [command] { return runAgreement(*command); }; });
+}
+
+}  // namespace
+
+void addBenchCommands(CLI::App& app, std::function<ExitCode()>& chosen) {
+    CLI::App* bench = app.add_subcommand("bench", "Measure the renderer against itself");
+    bench->require_subcommand(1);
+    addAgreement(*bench, chosen);
+}
+
+}  // namespace etendue

@@ -1,0 +1,50 @@
+// Options that several commands share. CLI11 is known to main.cpp, lens_command.cpp,
+// bench_options.cpp and the two headers that these share alone.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/option_checks.h"
+
+namespace etendue {
+
+inline void addCamera(CLI::App* command, std::filesystem::path& camera) {
+    command
+        ->add_option("--camera", camera,
+                     "Look through this file's [camera], such as scenes/cameras/fisheye.toml")
+        ->type_name("FILE");
+}
+
+inline void addOverrides(CLI::App* command, std::vector<std::string>& overrides) {
+    command->add_option("-s,--set", overrides, "Override any key of the scene; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("KEY=VALUE");
+}
+
+inline void addSeed(CLI::App* command, std::uint64_t& seed) {
+    command->add_option("--seed", seed, "Of the random numbers; default 0")
+        ->check(numberThat<std::uint64_t>([](std::uint64_t) { return true; },
+                                          "a whole number from 0 to 2^64 - 1"))
+        ->type_name("N");
+}
+
+inline void addThreads(CLI::App* command, std::optional<int>& threads) {
+    command->add_option("--threads", threads, "Default: one for each processor")
+        ->check(CLI::Range(1, 1024).description(""))
+        ->type_name("N");
+}
+
+inline void addSize(CLI::App* command, std::vector<int>& size, const char* description) {
+    command->add_option("--size", size, description)
+        ->delimiter(',')
+        ->expected(2)
+        ->check(CLI::Range(1, 32768).description(""))
+        ->type_name("W,H");
+}
+
+}  // namespace etendue

@@ -1,0 +1,85 @@
+#include "statistics/image_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace etendue {
+
+namespace {
+
+// Keeps black pixels of the reference from deciding alone.
+constexpr double relativeFloor = 0.01;
+
+void requireSameSize(const Picture& a, const Picture& b) {
+    if (a.empty() || a.size() % 3 != 0 || a.size() != b.size())
+        throw std::invalid_argument("pictures to compare must have one size");
+}
+
+double squared(double x) { return x * x; }
+
+/// In double: sums over a picture would lose the small ones.
+std::vector<double> pixelErrors(const Picture& picture, const Picture& reference) {
+    std::vector<double> errors(picture.size() / 3);
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+        const double a = picture[i], r = reference[i];
+        errors[i / 3] += squared(a - r) / (squared(r) + relativeFloor) / 3.0;
+    }
+    return errors;
+}
+
+double meanOf(std::span<const double> values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+ImageErrors imageErrors(const Picture& picture, const Picture& reference) {
+    requireSameSize(picture, reference);
+    ImageErrors result;
+    double sumOfPicture = 0.0, sumOfReference = 0.0;
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+        const double a = picture[i], r = reference[i];
+        result.mse += squared(a - r);
+        result.mae += std::abs(a - r);
+        sumOfPicture += a;
+        sumOfReference += r;
+    }
+    const auto count = static_cast<double>(picture.size());
+    result.mse /= count;
+    result.mae /= count;
+    result.meanError =
+        sumOfReference == 0.0 ? std::nan("") : (sumOfPicture - sumOfReference) / sumOfReference;
+
+    std::vector<double> errors = pixelErrors(picture, reference);
+    result.relMse = meanOf(errors);
+    const auto kept = static_cast<std::ptrdiff_t>(errors.size() - errors.size() / 1000);
+    if (kept < std::ssize(errors))
+        std::nth_element(errors.begin(), errors.begin() + kept, errors.end());
+    result.relMseTrimmed = meanOf({errors.begin(), errors.begin() + kept});
+    return result;
+}
+
+std::vector<float> relativeSquaredErrors(const Picture& picture, const Picture& reference) {
+    requireSameSize(picture, reference);
+    const std::vector<double> errors = pixelErrors(picture, reference);
+    std::vector<float> result(errors.size());
+    std::ranges::transform(errors, result.begin(), [](double e) { return static_cast<float>(e); });
+    return result;
+}
+
+double biasSquared(const Picture& picture1, const Picture& picture2, const Picture& reference1,
+                   const Picture& reference2) {
+    requireSameSize(picture1, picture2);
+    requireSameSize(picture1, reference1);
+    requireSameSize(picture1, reference2);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < picture1.size(); ++i) {
+        const double a1 = picture1[i], a2 = picture2[i], r1 = reference1[i], r2 = reference2[i];
+        sum += (a1 - r1) * (a2 - r2);
+    }
+    return sum / static_cast<double>(picture1.size());
+}
+
+}  // namespace etendue

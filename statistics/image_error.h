@@ -1,0 +1,31 @@
+// How far a picture is from its reference (docs/metrics.md).
+#pragma once
+
+#include <vector>
+
+#include "statistics/picture_comparison.h"
+
+namespace etendue {
+
+/// Means over all pixels and channels of linear RGB; a of the picture, r of its reference.
+struct ImageErrors {
+    double mse = 0.0;            // (a − r)²
+    double relMse = 0.0;         // (a − r)² / (r² + 0.01)
+    double relMseTrimmed = 0.0;  // relMse of the pixels that the 0.1 % worst are left out of
+    double mae = 0.0;            // |a − r|
+    double meanError = 0.0;      // (mean a − mean r) / mean r, signed; NaN where mean r is 0
+};
+
+/// Both of the same size, of at least one pixel; otherwise std::invalid_argument.
+ImageErrors imageErrors(const Picture& picture, const Picture& reference);
+
+/// One value a pixel: the mean over its channels of (a − r)² / (r² + 0.01).
+std::vector<float> relativeSquaredErrors(const Picture& picture, const Picture& reference);
+
+/// bias², without the noise that every other error of a noisy picture keeps: the mean of
+/// (a₁ − r₁)(a₂ − r₂), whose expectation is that of (mean a − mean r)² where all four pictures are
+/// independent. It may come out negative.
+double biasSquared(const Picture& picture1, const Picture& picture2, const Picture& reference1,
+                   const Picture& reference2);
+
+}  // namespace etendue

@@ -8,93 +8,17 @@
 #include "renderer/parallel.h"
 #include "tools/agreement_report.h"
 #include "tools/progress.h"
+#include "tools/scene_names.h"
 #include "tools/stop_request.h"
 
 namespace etendue {
 
 namespace {
 
-/// What was asked for by a name, and where it lies.
-struct NamedFile {
-    std::string name;
-    std::filesystem::path file;  // empty: the scene's own camera
-    bool isDispersive = false;
-};
-
 /// Which estimator is compared with which.
 struct Pair {
     Contender tested, reference;
 };
-
-std::vector<std::string> sceneNamesIn(const std::filesystem::path& folder) {
-    std::vector<std::string> names;
-    std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-        if (std::filesystem::exists(entry.path() / "scene.toml"))
-            names.push_back(entry.path().filename().string());
-    std::ranges::sort(names);
-    return names;
-}
-
-std::vector<std::string> cameraNamesIn(const std::filesystem::path& folder) {
-    std::vector<std::string> names{"own"};
-    std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(folder / "cameras", error))
-        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
-    return names;
-}
-
-[[noreturn]] void failUnknown(const std::string& kind, const std::string& name,
-                              const std::filesystem::path& folder,
-                              const std::vector<std::string>& known) {
-    std::string message = fmt::format("no {} \"{}\" in {}", kind, name, folder.string());
-    if (const auto nearest = nearestName(name, known))
-        message += fmt::format("; did you mean \"{}\"?", *nearest);
-    throw InputError(message, ExitCode::missingFile);
-}
-
-bool isFile(const std::filesystem::path& path) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(path, error);
-}
-
-NamedFile sceneCalled(const std::string& name, const std::filesystem::path& folder) {
-    const std::filesystem::path path = name;
-    if (isFile(path))
-        return {path.filename() == "scene.toml" && path.has_parent_path()
-                    ? path.parent_path().filename().string()
-                    : path.stem().string(),
-                path};
-    const std::filesystem::path file = folder / path / "scene.toml";
-    if (!isFile(file)) failUnknown("scene", name, folder, sceneNamesIn(folder));
-    return {name, file};
-}
-
-NamedFile cameraCalled(const std::string& name, const std::filesystem::path& folder) {
-    constexpr std::string_view suffix = "+dispersion";
-    if (name.ends_with(suffix)) {
-        NamedFile camera = cameraCalled(name.substr(0, name.size() - suffix.size()), folder);
-        return {name, camera.file, true};
-    }
-    if (name == "own") return {name, {}};
-    const std::filesystem::path path = name;
-    if (isFile(path)) return {path.stem().string(), path};
-    const std::filesystem::path file = folder / "cameras" / (name + ".toml");
-    if (!isFile(file)) failUnknown("camera", name, folder / "cameras", cameraNamesIn(folder));
-    return {name, file};
-}
-
-std::vector<NamedFile> scenesOf(const AgreementCommand& command) {
-    const std::vector<std::string> names =
-        command.scenes.empty() ? sceneNamesIn(command.folder) : command.scenes;
-    if (names.empty())
-        throw InputError(fmt::format("{}: no folder in it has a scene.toml; --scenes names another",
-                                     command.folder.string()),
-                         ExitCode::missingFile);
-    std::vector<NamedFile> scenes;
-    for (const std::string& name : names) scenes.push_back(sceneCalled(name, command.folder));
-    return scenes;
-}
 
 /// Single techniques are held against path tracing, which shares no code with them; but it meets
 /// the light itself only by chance if that is small.
@@ -127,7 +51,9 @@ std::vector<Pair> pairsOf(const AgreementCommand& command) {
 class AgreementRun {
 public:
     explicit AgreementRun(const AgreementCommand& command)
-        : command_(command), scenes_(scenesOf(command)), pairs_(pairsOf(command)) {
+        : command_(command),
+          scenes_(scenesCalled(command.scenes, command.folder)),
+          pairs_(pairsOf(command)) {
         for (const std::string& name : command.cameras)
             cameras_.push_back(cameraCalled(name, command.folder));
         settings_.seeds = command.seeds;

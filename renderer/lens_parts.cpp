@@ -122,6 +122,8 @@ std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, CameraSettin
     const auto notice = [&](const std::string& sentence) { loading.notes.push_back(sentence); };
     const LensFit fit =
         cachedFit(prescription, domain, fitSettings, options.fitCache, notice, options.fitProgress);
+    loaded.fit = FitSummary{fit.settings.terms, fit.settings.degree, fit.errors.directionMrad.rms,
+                            fit.errors.sensorMicrometres.rms};
     return std::make_shared<PolynomialLens>(prescription, fit,
                                             Aperture(domain.apertureRadiusMm, settings.blades));
 }

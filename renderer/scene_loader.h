@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,12 @@ struct FilmSettings {
     FilmColor color = FilmColor::rgb;  // xyz: the render is spectral
 };
 
+/// What a scene's lens was fitted by, and how well: rms on rays drawn anew (FitErrors).
+struct FitSummary {
+    int terms = 0, degree = 0;
+    double directionMrad = 0.0, sensorMicrometres = 0.0;
+};
+
 struct LoadedScene {
     std::unique_ptr<Scene> scene;
     std::unique_ptr<Camera> camera;
@@ -31,6 +38,7 @@ struct LoadedScene {
     EstimatorSettings estimator;
     Sampler sampler = Sampler::independent;
     int samples = 64;
+    std::optional<FitSummary> fit;   // of a camera whose lens is a polynomial
     std::vector<std::string> notes;  // what the user should know, but what is not an error
     std::string hash;  // of the bytes of every file read and of the overrides, as 32 hex digits
     // For the image's metadata.

@@ -64,6 +64,7 @@ double thinLensFocusMm(const ConfigTable& table, double focalMm, const CameraSet
 
 std::shared_ptr<const LensModel> loadThinLens(const ConfigTable& table, double focalMm,
                                               const CameraSettings& settings, LoadedScene& loaded) {
+    loaded.lensModel = "thin lens";
     loaded.fNumber = table.number("f_number", {0.1, 1e4});
     const double u = thinLensFocusMm(table, focalMm, settings, *loaded.scene);
     const double v = focalMm / (1.0 - focalMm / u);

@@ -106,7 +106,10 @@ std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, CameraSettin
     loaded.focusDistance = 1e-3 * settings.focusDistanceMm;
     if (loaded.estimator.usesOuterPupil)
         camera.outerPupil = std::make_shared<OuterPupil>(makeTracedLens(prescription, settings));
-    if (representation == "traced") return makeTracedLens(prescription, settings);
+    if (representation == "traced") {
+        loaded.lensModel = "exact trace";
+        return makeTracedLens(prescription, settings);
+    }
 
     DomainRequest request;
     const double margin = 2.0 * static_cast<double>(loaded.film.filterRadius);
@@ -122,6 +125,8 @@ std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, CameraSettin
     const auto notice = [&](const std::string& sentence) { loading.notes.push_back(sentence); };
     const LensFit fit =
         cachedFit(prescription, domain, fitSettings, options.fitCache, notice, options.fitProgress);
+    loaded.lensModel = representation + ", " + std::to_string(fit.settings.terms) +
+                       " terms, degree " + std::to_string(fit.settings.degree);
     loaded.fit = FitSummary{fit.settings.terms, fit.settings.degree, fit.errors.directionMrad.rms,
                             fit.errors.sensorMicrometres.rms};
     return std::make_shared<PolynomialLens>(prescription, fit,

@@ -38,8 +38,9 @@ struct LoadedScene {
     EstimatorSettings estimator;
     Sampler sampler = Sampler::independent;
     int samples = 64;
-    std::optional<FitSummary> fit;   // of a camera whose lens is a polynomial
-    std::vector<std::string> notes;  // what the user should know, but what is not an error
+    std::string lensModel = "pinhole";  // in words: "thin lens", "two-point, 40 terms, degree 11"
+    std::optional<FitSummary> fit;      // of a camera whose lens is a polynomial
+    std::vector<std::string> notes;     // what the user should know, but what is not an error
     std::string hash;  // of the bytes of every file read and of the overrides, as 32 hex digits
     // For the image's metadata.
     double fNumber = 0.0;        // 0: pinhole

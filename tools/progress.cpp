@@ -85,13 +85,19 @@ void JobBar::finishJob(const std::string& outcome) {
                         formatDuration(secondsLeft(0.0))));
 }
 
+void JobBar::skipJobs(std::size_t count) {
+    done_ += count;
+    skipped_ += count;
+}
+
 void JobBar::clear() const {
     if (isTerminal_) say("\r\033[K");
 }
 
 double JobBar::secondsLeft(double share) const {
     const double done = static_cast<double>(done_) + share;
-    const double each = done_ > 0 ? secondsSince(start_) / done : secondsEach_;
+    const double timed = done - static_cast<double>(skipped_);
+    const double each = done_ > skipped_ ? secondsSince(start_) / timed : secondsEach_;
     return std::max(0.0, (static_cast<double>(jobs_) - done) * each);
 }
 

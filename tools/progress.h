@@ -45,13 +45,15 @@ public:
     /// `name`: of the job that is under way, `share` of it done.
     void update(const std::string& name, double share);
     void finishJob(const std::string& outcome);
+    /// Those done before: they took no time.
+    void skipJobs(std::size_t count);
     void clear() const;
 
 private:
     double secondsLeft(double share) const;
 
     bool isTerminal_;
-    std::size_t jobs_, done_ = 0;
+    std::size_t jobs_, done_ = 0, skipped_ = 0;
     double secondsEach_, lastSeconds_ = -1e9;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

@@ -1,0 +1,316 @@
+#include "tools/bench_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "lens/fit_cache.h"
+#include "renderer/render.h"
+#include "renderer/scene_loader.h"
+#include "tools/bench_lens.h"
+#include "tools/bench_reference.h"
+#include "tools/machine.h"
+#include "tools/progress.h"
+#include "tools/stop_request.h"
+#include "tools/version.h"
+
+namespace etendue {
+
+namespace {
+
+/// A name that any file system takes, of several names.
+std::string fileName(const std::vector<std::string>& parts) {
+    std::string name;
+    for (const std::string& part : parts) {
+        if (part.empty()) continue;
+        if (!name.empty()) name += '.';
+        for (const char c : part)
+            name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '+' ? c : '_';
+    }
+    return name;
+}
+
+FrameWindow windowOf(const FilmSettings& film) {
+    return {film.width, film.height, 0, 0, film.width, film.height};
+}
+
+/// One suite's run over one folder.
+class BenchRunner {
+public:
+    BenchRunner(const BenchSuite& suite, const BenchRunSettings& settings,
+                const BenchFolder& folder)
+        : suite_(suite),
+          settings_(settings),
+          folder_(folder),
+          records_(readBenchRecords(folder.records())),
+          bar_(suite.runCount(), suite.seconds) {
+        std::filesystem::create_directories(folder.path / "pictures");
+        if (records_.header)
+            checkHeader();
+        else
+            begin();
+    }
+
+    bool run() {
+        for (const BenchView& view : suite_.views)
+            if (!isDone(view) && !runView(view)) return false;
+        bar_.clear();
+        return true;
+    }
+
+private:
+    void begin() {
+        const Machine machine = thisMachine();
+        BenchHeader header;
+        header.title = suite_.title;
+        header.key = suite_.key();
+        header.command = settings_.command;
+        header.version = version;
+        header.started = utcNow();
+        header.processor = machine.processor;
+        header.cores = machine.cores;
+        header.isa = machine.isa;
+        header.compiler = machine.compiler;
+        header.build = machine.build;
+        header.system = machine.system;
+        header.threads = settings_.threads;
+        header.load = machineLoad();
+        appendRecord(folder_.records(), header);
+    }
+
+    void checkHeader() const {
+        const BenchHeader& header = *records_.header;
+        const auto refuse = [&](const std::string& what) {
+            throw InputError(
+                fmt::format("{}: holds results of {}; take another folder or remove this one",
+                            folder_.records().string(), what));
+        };
+        if (header.key != suite_.key()) refuse("another suite, or of this one with other settings");
+        if (header.version != version) refuse("etendue " + header.version);
+        if (header.threads != settings_.threads) refuse(fmt::format("{} threads", header.threads));
+    }
+
+    const BenchRun* find(const BenchConfiguration& configuration, int seed) const {
+        for (const BenchRun& run : records_.runs)
+            if (run.seed == seed && run.configuration == configuration) return &run;
+        return nullptr;
+    }
+
+    template <class Visit>
+    void forEachRun(const BenchView& view, const Visit& visit) const {
+        for (int seed = 0; seed < suite_.seeds; ++seed)
+            for (std::size_t v = 0; v < view.variants.size(); ++v)
+                for (const std::string& estimator : view.estimators)
+                    visit(BenchConfiguration{view.scene.name, view.camera.name,
+                                             view.variants[v].name, estimator},
+                          v, seed);
+    }
+
+    bool isDone(const BenchView& view) {
+        std::size_t done = 0, all = 0;
+        forEachRun(view, [&](const BenchConfiguration& configuration, std::size_t, int seed) {
+            ++all;
+            if (find(configuration, seed)) ++done;
+        });
+        const bool wantsTechniques = hasTechniques(view);
+        const bool isWhole =
+            done == all && (!wantsTechniques || std::filesystem::exists(folder_.techniques(
+                                                    view.scene.name, view.camera.name)));
+        if (isWhole) bar_.skipJobs(all);
+        return isWhole;
+    }
+
+    bool hasTechniques(const BenchView& view) const {
+        return suite_.wantsTechniques && std::find(view.estimators.begin(), view.estimators.end(),
+                                                   "bdpt") != view.estimators.end();
+    }
+
+    LoadedScene load(const BenchView& view, const std::vector<std::string>& overrides) {
+        LoadOptions options;
+        options.overrides = view.overrides;
+        options.overrides.insert(options.overrides.end(), overrides.begin(), overrides.end());
+        options.overrides.push_back(fmt::format("film.width={}", suite_.width));
+        options.overrides.push_back(fmt::format("film.height={}", suite_.height));
+        options.threads = settings_.threads;
+        options.fitCache = fitCacheDirectory();
+        options.fitProgress = [&](double, std::string_view stage) {
+            bar_.update(fmt::format("{}: {}", titleOf(view), stage), 0.0);
+        };
+        options.camera = view.camera.file;
+        options.disperses = view.camera.file.empty() || view.camera.isDispersive;
+        return loadScene(view.scene.file, options);
+    }
+
+    bool runView(const BenchView& view) {
+        std::vector<LoadedScene> variants;
+        for (const BenchVariant& variant : view.variants) {
+            variants.push_back(load(view, variant.overrides));
+            recordLens(view, variant, variants.back());
+        }
+        const std::optional<Picture> reference = referenceOf(view);
+        if (!reference) return false;
+        bool goesOn = true;
+        forEachRun(view, [&](const BenchConfiguration& configuration, std::size_t v, int seed) {
+            if (!goesOn) return;
+            if (const BenchRun* run = find(configuration, seed)) {
+                if (run->sceneHash != variants[v].hash)
+                    throw InputError(fmt::format(
+                        "{}: holds results of {} as it was before it was changed; take another "
+                        "folder or remove this one",
+                        folder_.records().string(), view.scene.file.string()));
+                bar_.skipJobs(1);
+                return;
+            }
+            goesOn = runOne(configuration, seed, variants[v], *reference);
+        });
+        if (goesOn && hasTechniques(view)) goesOn = renderTechniques(view, variants.front());
+        return goesOn;
+    }
+
+    void recordLens(const BenchView& view, const BenchVariant& variant, const LoadedScene& loaded) {
+        const auto isSame = [&](const BenchLens& lens) {
+            return lens.camera == lensName(view) && lens.variant == variant.name;
+        };
+        if (std::any_of(records_.lenses.begin(), records_.lenses.end(), isSame)) return;
+        BenchLens lens = measureLens(loaded);
+        lens.camera = lensName(view);
+        lens.variant = variant.name;
+        appendRecord(folder_.records(), lens);
+        records_.lenses.push_back(lens);
+    }
+
+    /// A scene's own camera is no other scene's.
+    static std::string lensName(const BenchView& view) {
+        return view.camera.name == "own" ? view.scene.name + ", own" : view.camera.name;
+    }
+
+    /// The truth of a lens of glass is its exact trace.
+    std::optional<Picture> referenceOf(const BenchView& view) {
+        const std::string title = titleOf(view) + ": reference";
+        LoadedScene truth = load(view, {});
+        if (truth.fit) truth = load(view, {"camera.representation=traced"});
+        const ReferenceSettings settings{suite_.referenceEstimator, suite_.referenceSeconds,
+                                         settings_.threads};
+        const std::optional<Reference> reference =
+            referenceFor(truth, settings, referenceCacheDirectory(), [&](double share) {
+                bar_.update(fmt::format("{} {:.0f} %", title, 100.0 * share), 0.0);
+                return !isStopRequested();
+            });
+        if (!reference) return {};
+        const auto isSame = [&](const BenchReference& r) {
+            return r.scene == view.scene.name && r.camera == view.camera.name &&
+                   r.key == reference->key;
+        };
+        if (std::none_of(records_.references.begin(), records_.references.end(), isSame)) {
+            writeExr(folder_.referencePicture(view.scene.name, view.camera.name),
+                     windowOf(truth.film), {{{"R", "G", "B"}, reference->picture}}, {});
+            const BenchReference record{
+                view.scene.name,    view.camera.name,   suite_.referenceEstimator, reference->key,
+                reference->samples, reference->seconds, reference->relMse};
+            appendRecord(folder_.records(), record);
+            records_.references.push_back(record);
+        }
+        return reference->picture;
+    }
+
+    bool runOne(const BenchConfiguration& configuration, int seed, const LoadedScene& loaded,
+                const Picture& reference) {
+        BenchRun run{configuration, seed, loaded.hash, machineLoad(), 0, 0.0, {}};
+        const std::string title = fmt::format(
+            "{}, {}, {}{}{}", configuration.scene, configuration.camera, configuration.variant,
+            configuration.variant.empty() ? "" : ", ", configuration.estimator);
+        EstimatorSettings kind = loaded.estimator;
+        kind.kind = configuration.estimator;
+        kind.techniques = {};
+        const std::unique_ptr<Estimator> estimator = makeEstimator(kind);
+        const Filter filter(loaded.film.filter, loaded.film.filterRadius);
+        Film film(windowOf(loaded.film), {}, loaded.film.color);
+        double seconds = 0.0;
+        std::uint32_t samples = 0;
+        while (seconds < suite_.seconds && samples < suite_.mostSamples) {
+            RenderSettings settings;
+            settings.firstSample = samples;
+            settings.samples = std::min(std::max(samples, 1u), suite_.mostSamples - samples);
+            settings.seed = static_cast<std::uint64_t>(seed);
+            settings.sampler = loaded.sampler;
+            settings.threads = settings_.threads;
+            settings.timeLimitSeconds = suite_.seconds - seconds;
+            const RenderResult result = render(
+                *loaded.scene, *loaded.camera, *estimator, filter, film, settings,
+                [&](const RenderProgress& p) {
+                    bar_.update(title, std::min(1.0, (seconds + p.seconds) / suite_.seconds));
+                    return !isStopRequested();
+                });
+            if (result.wasInterrupted) return false;
+            seconds += result.seconds;
+            samples += result.samples;
+            run.badSamples += result.badSampleCount;
+            run.checkpoints.push_back(
+                {samples, seconds, imageErrors(film.channels().front().pixels, reference)});
+        }
+        const Picture picture = film.channels().front().pixels;
+        writeExr(folder_.picture(configuration, seed), windowOf(loaded.film),
+                 {{{"R", "G", "B"}, picture}}, {});
+        appendRecord(folder_.records(), run);
+        records_.runs.push_back(run);
+        bar_.finishJob(fmt::format("{}, seed {}: {} samples in {:.2f} s, relMSE {:.3g}", title,
+                                   seed, samples, seconds, run.checkpoints.back().errors.relMse));
+        return !isStopRequested();
+    }
+
+    bool renderTechniques(const BenchView& view, const LoadedScene& loaded) {
+        const std::filesystem::path file = folder_.techniques(view.scene.name, view.camera.name);
+        if (std::filesystem::exists(file)) return true;
+        EstimatorSettings kind = loaded.estimator;
+        kind.kind = "bdpt";
+        kind.techniques = {};
+        Film film(windowOf(loaded.film), {}, loaded.film.color);
+        TechniqueImages images(film.window(), film.color());
+        RenderSettings settings;
+        settings.samples = suite_.mostSamples;
+        settings.timeLimitSeconds = suite_.seconds;
+        settings.threads = settings_.threads;
+        settings.techniqueImages = &images;
+        const RenderResult result =
+            render(*loaded.scene, *loaded.camera, *makeEstimator(kind),
+                   Filter(loaded.film.filter, loaded.film.filterRadius), film, settings,
+                   [&](const RenderProgress&) {
+                       bar_.update(titleOf(view) + ": techniques of bdpt", 0.0);
+                       return !isStopRequested();
+                   });
+        if (result.wasInterrupted) return false;
+        writeExr(file, film.window(), images.channels(film.samples(), film.state().lightPaths), {});
+        return true;
+    }
+
+    const BenchSuite& suite_;
+    const BenchRunSettings& settings_;
+    const BenchFolder& folder_;
+    BenchRecords records_;
+    JobBar bar_;
+};
+
+}  // namespace
+
+std::filesystem::path BenchFolder::picture(const BenchConfiguration& c, int seed) const {
+    return path / "pictures" /
+           (fileName({c.scene, c.camera, c.variant, c.estimator, std::to_string(seed)}) + ".exr");
+}
+
+std::filesystem::path BenchFolder::referencePicture(const std::string& scene,
+                                                    const std::string& camera) const {
+    return path / "pictures" / (fileName({scene, camera, "reference"}) + ".exr");
+}
+
+std::filesystem::path BenchFolder::techniques(const std::string& scene,
+                                              const std::string& camera) const {
+    return path / "pictures" / (fileName({scene, camera, "techniques"}) + ".exr");
+}
+
+bool runBench(const BenchSuite& suite, const BenchRunSettings& settings,
+              const BenchFolder& folder) {
+    return BenchRunner(suite, settings, folder).run();
+}
+
+}  // namespace etendue

@@ -1,0 +1,36 @@
+// BenchRunner: does what a suite asks for, and keeps what it finds in a folder.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "tools/bench_records.h"
+#include "tools/bench_suite.h"
+
+namespace etendue {
+
+/// The files of a suite's folder.
+struct BenchFolder {
+    std::filesystem::path path;
+
+    std::filesystem::path records() const { return path / "results.jsonl"; }
+    /// Mean over the seeds of the pictures after the time of a run; see also referencePicture.
+    std::filesystem::path picture(const BenchConfiguration& configuration, int seed) const;
+    std::filesystem::path referencePicture(const std::string& scene,
+                                           const std::string& camera) const;
+    std::filesystem::path techniques(const std::string& scene, const std::string& camera) const;
+};
+
+struct BenchRunSettings {
+    std::string command;  // as it was typed
+    int threads = 1;
+};
+
+/// Runs what the folder's records do not have yet. False if a signal ended it before all was done.
+///
+/// Runs of one view are interleaved: every estimator and variant with the first seed, then with the
+/// second … so that what the machine does besides meets all of them alike. Only rendering is timed.
+/// Throws InputError if the folder holds results of another suite, program or scene.
+bool runBench(const BenchSuite& suite, const BenchRunSettings& settings, const BenchFolder& folder);
+
+}  // namespace etendue

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <new>
 #include <set>
 #include <stdexcept>
@@ -134,43 +135,58 @@ std::vector<T> readPixels(OIIO::ImageInput& input, const std::vector<int>& chann
     return chosen;
 }
 
-void requireFinite(const std::vector<float>& pixels, const Image& image,
+void requireFinite(const std::vector<float>& pixels, int channels, int width,
                    const std::filesystem::path& file) {
     const auto bad = std::ranges::find_if_not(pixels, [](float v) { return std::isfinite(v); });
     if (bad == pixels.end()) return;
-    const auto pixel = (bad - pixels.begin()) / image.channels;
-    throw unreadable(file, "pixel " + std::to_string(pixel % image.width) + ", " +
-                               std::to_string(pixel / image.width) +
+    const auto pixel = (bad - pixels.begin()) / channels;
+    throw unreadable(file, "pixel " + std::to_string(pixel % width) + ", " +
+                               std::to_string(pixel / width) +
                                " is NaN or infinite, expected finite numbers");
 }
 
-Image decode(const Bytes& bytes, const std::string& format, const std::filesystem::path& file) {
-    const std::string fault = format == "png"       ? pngFault(bytes)
-                              : format == "openexr" ? exrFault(bytes)
-                                                    : std::string();
-    if (!fault.empty()) throw unreadable(file, fault);
-    const auto input = OIIO::ImageInput::create(format);
-    if (!input) throw unreadable(file, OIIO::geterror());
-    OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-    OIIO::ImageSpec asStored, spec;
-    asStored.attribute("oiio:UnassociatedAlpha", 1);
-    const bool canRead = input->set_ioproxy(&memory);
-    requireSuccess(canRead && input->open(file.filename().string(), spec, asStored), *input, file);
-    checkSize(spec, bytes.size(), file);
+/// A file, open for reading. The reader keeps where the bytes are.
+class OpenFile {
+public:
+    explicit OpenFile(const std::filesystem::path& file)
+        : bytes_(readBytes(file)), memory_(bytes_.data(), bytes_.size()) {
+        const std::string format = formatOf(file);
+        const std::string fault = format == "png"       ? pngFault(bytes_)
+                                  : format == "openexr" ? exrFault(bytes_)
+                                                        : std::string();
+        if (!fault.empty()) throw unreadable(file, fault);
+        input_ = OIIO::ImageInput::create(format);
+        if (!input_) throw unreadable(file, OIIO::geterror());
+        OIIO::ImageSpec asStored, spec;
+        asStored.attribute("oiio:UnassociatedAlpha", 1);
+        const bool canRead = input_->set_ioproxy(&memory_);
+        requireSuccess(canRead && input_->open(file.filename().string(), spec, asStored), *input_,
+                       file);
+        checkSize(spec, bytes_.size(), file);
+    }
+    OIIO::ImageInput& input() { return *input_; }
 
+private:
+    Bytes bytes_;
+    OIIO::Filesystem::IOMemReader memory_;
+    std::unique_ptr<OIIO::ImageInput> input_;
+};
+
+Image decode(OIIO::ImageInput& input, const std::filesystem::path& file) {
+    const OIIO::ImageSpec& spec = input.spec();
     const std::vector<int> channels = channelsToRead(spec, file);
     Image image{spec.width, spec.height, static_cast<int>(channels.size()), {}};
     const OIIO::TypeDesc type = spec.channelformat(channels.front());
     switch (type.basetype) {
         case OIIO::TypeDesc::UINT8:
-            image.pixels = readPixels<std::uint8_t>(*input, channels, file);
+            image.pixels = readPixels<std::uint8_t>(input, channels, file);
             return image;
         case OIIO::TypeDesc::UINT16:
         case OIIO::TypeDesc::HALF:
         case OIIO::TypeDesc::FLOAT:
         case OIIO::TypeDesc::DOUBLE: {
-            auto pixels = readPixels<float>(*input, channels, file);
-            requireFinite(pixels, image, file);
+            auto pixels = readPixels<float>(input, channels, file);
+            requireFinite(pixels, image.channels, image.width, file);
             image.pixels = std::move(pixels);
             image.isEncoded = type == OIIO::TypeUInt16;
             return image;
@@ -178,6 +194,21 @@ Image decode(const Bytes& bytes, const std::string& format, const std::filesyste
         default:
             throw unreadable(file, std::string("has ") + type.c_str() +
                                        " pixels, expected float or 8- or 16-bit integers");
+    }
+}
+
+/// Whatever goes wrong while a file is read is the file's fault.
+template <class Read>
+auto blamingFile(const std::filesystem::path& file, const Read& read) {
+    setUpOpenImageIo();
+    try {
+        return read();
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw unreadable(file, "is too large for the memory of this machine");
+    } catch (const std::exception& error) {
+        throw unreadable(file, error.what());
     }
 }
 
@@ -278,17 +309,24 @@ void checkMetadata(const Bytes& exr, const Metadata& metadata) {
 }  // namespace
 
 Image readImage(const std::filesystem::path& file) {
-    setUpOpenImageIo();
-    try {
-        const Bytes bytes = readBytes(file);
-        return decode(bytes, formatOf(file), file);
-    } catch (const InputError&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw unreadable(file, "is too large for the memory of this machine");
-    } catch (const std::exception& error) {
-        throw unreadable(file, error.what());
-    }
+    return blamingFile(file, [&] {
+        OpenFile open(file);
+        return decode(open.input(), file);
+    });
+}
+
+std::optional<ExrChannels> readExrChannels(const std::filesystem::path& file,
+                                           const std::vector<std::string>& names) {
+    return blamingFile(file, [&]() -> std::optional<ExrChannels> {
+        OpenFile open(file);
+        const OIIO::ImageSpec& spec = open.input().spec();
+        std::vector<int> channels;
+        for (const std::string& name : names) channels.push_back(spec.channelindex(name));
+        if (std::ranges::min(channels) < 0) return std::nullopt;
+        ExrChannels result{names, readPixels<float>(open.input(), channels, file)};
+        requireFinite(result.pixels, static_cast<int>(names.size()), spec.width, file);
+        return result;
+    });
 }
 
 void writeExr(const std::filesystem::path& file, const FrameWindow& window,

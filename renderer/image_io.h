@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -40,6 +41,11 @@ struct ExrChannels {
     std::vector<std::string> names;
     std::vector<float> pixels;  // width · height · names.size()
 };
+
+/// The channels of these names (at least one) of the data window, as float; none if one is missing,
+/// as of a file that is no EXR. Throws InputError as readImage does.
+std::optional<ExrChannels> readExrChannels(const std::filesystem::path& file,
+                                           const std::vector<std::string>& names);
 
 /// 9 or 16 floats are a matrix, row by row for row vectors (p · M) as OpenEXR's own worldToCamera
 /// and worldToNDC; 2 or 3 are a vector, other numbers of floats an array.

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <stdexcept>
+
+#include "statistics/statistics.h"
 
 namespace etendue {
 
@@ -29,6 +32,10 @@ std::vector<double> pixelErrors(const Picture& picture, const Picture& reference
     return errors;
 }
 
+double sumOf(const Picture& picture) {
+    return std::accumulate(picture.begin(), picture.end(), 0.0);
+}
+
 double meanOf(std::span<const double> values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -38,14 +45,12 @@ double meanOf(std::span<const double> values) {
 ImageErrors imageErrors(const Picture& picture, const Picture& reference) {
     requireSameSize(picture, reference);
     ImageErrors result;
-    double sumOfPicture = 0.0, sumOfReference = 0.0;
     for (std::size_t i = 0; i < picture.size(); ++i) {
         const double a = picture[i], r = reference[i];
         result.mse += squared(a - r);
         result.mae += std::abs(a - r);
-        sumOfPicture += a;
-        sumOfReference += r;
     }
+    const double sumOfPicture = sumOf(picture), sumOfReference = sumOf(reference);
     const auto count = static_cast<double>(picture.size());
     result.mse /= count;
     result.mae /= count;
@@ -80,6 +85,38 @@ double biasSquared(const Picture& picture1, const Picture& picture2, const Pictu
         sum += (a1 - r1) * (a2 - r2);
     }
     return sum / static_cast<double>(picture1.size());
+}
+
+double meanErrorHalfWidth(const Picture& picture, const Picture& reference,
+                          const Picture& pictureVariance, const Picture& referenceVariance) {
+    constexpr double normalQuantile99 = 2.575829303548901;
+    requireSameSize(picture, reference);
+    // Of the sum over all values: pixels are independent, the channels of one at worst the same.
+    const auto varianceOfSum = [&](const Picture& variance) {
+        if (!variance.empty()) requireSameSize(picture, variance);
+        double sum = 0.0;
+        for (std::size_t i = 0; i + 2 < variance.size(); i += 3)
+            sum += squared(std::sqrt(static_cast<double>(variance[i])) +
+                           std::sqrt(static_cast<double>(variance[i + 1])) +
+                           std::sqrt(static_cast<double>(variance[i + 2])));
+        return sum;
+    };
+    const double ratio = sumOf(picture) / sumOf(reference);
+    return normalQuantile99 / std::abs(sumOf(reference)) *
+           std::sqrt(varianceOfSum(pictureVariance) +
+                     squared(ratio) * varianceOfSum(referenceVariance));
+}
+
+double meanErrorHalfWidthByScatter(const Picture& picture, const Picture& reference) {
+    requireSameSize(picture, reference);
+    std::vector<double> differences(picture.size() / 3);
+    for (std::size_t i = 0; i < picture.size(); ++i)
+        differences[i / 3] += static_cast<double>(picture[i]) - static_cast<double>(reference[i]);
+    if (differences.size() < 2) return std::nan("");
+    const Summary summary = summarize(differences);
+    const double meanOfReference = sumOf(reference) / static_cast<double>(differences.size());
+    return studentQuantile(0.99, static_cast<double>(differences.size() - 1)) *
+           summary.standardError / std::abs(meanOfReference);
 }
 
 }  // namespace etendue

@@ -28,4 +28,13 @@ std::vector<float> relativeSquaredErrors(const Picture& picture, const Picture& 
 double biasSquared(const Picture& picture1, const Picture& picture2, const Picture& reference1,
                    const Picture& reference2);
 
+/// Half of the 99 % interval of ImageErrors::meanError, from what is known of each pixel: the
+/// variance of its mean in each channel, empty for a picture without noise. The channels of a pixel
+/// are taken to vary together, which at worst makes the interval √3 times too wide.
+double meanErrorHalfWidth(const Picture& picture, const Picture& reference,
+                          const Picture& pictureVariance, const Picture& referenceVariance);
+/// The same from the scatter of the differences among pixels: as if their differences were nothing
+/// but noise, independent and of one spread. NaN for fewer than two pixels.
+double meanErrorHalfWidthByScatter(const Picture& picture, const Picture& reference);
+
 }  // namespace etendue

@@ -8,6 +8,7 @@
 #include "tools/bench_command.h"
 #include "tools/contender.h"
 #include "tools/option_checks.h"
+#include "tools/regress_command.h"
 #include "tools/scene_options.h"
 
 namespace etendue {
@@ -95,12 +96,57 @@ void addAgreement(CLI::App& bench, Chosen& chosen) {
         [&chosen, command] { chosen = [command] { return runAgreement(*command); }; });
 }
 
+void addRegress(CLI::App& bench, Chosen& chosen) {
+    const auto command = std::make_shared<RegressCommand>();
+    RegressCommand& c = *command;
+    CLI::App* regress = bench.add_subcommand(
+        "regress",
+        "Test bias, rate of convergence and noise of the estimators against what is stored "
+        "(docs/regression.md)");
+    regress->add_option("scene", c.scenes, "Names in --scenes; default: all there")
+        ->type_name("SCENE");
+    regress->add_option("--scenes", c.folder, "Folder of scenes and of cameras/; default: scenes")
+        ->type_name("DIR");
+    regress
+        ->add_option("--cameras", c.cameras,
+                     "Names in cameras/; default: pinhole,thin-lens,double-gauss,"
+                     "double-gauss-traced,fisheye,anamorphic")
+        ->delimiter(',')
+        ->allow_extra_args(false)  // scenes may follow
+        ->type_name("LIST");
+    regress->add_option("--estimators", c.estimators, "Default: pt,lt,bdpt")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember(estimatorKinds()).description(""))
+        ->type_name("LIST");
+    regress
+        ->add_option("--data", c.data,
+                     "Folder of baseline.toml and references/; default: tests/regression")
+        ->type_name("DIR");
+    CLI::Option* rebaseline = regress->add_flag(
+        "--rebaseline", c.rebaselines, "Take the noise that is measured for the baseline");
+    regress
+        ->add_flag("--make-references", c.makesReferences,
+                   "Render the references anew, and test nothing")
+        ->excludes(rebaseline);
+    regress
+        ->add_option("--samples", c.samples,
+                     "Per pixel of each picture; default: as the baseline says, or 16")
+        ->check(CLI::Range(2, 1 << 20).description(""))
+        ->type_name("N");
+    addSeed(regress, c.firstSeed);
+    addThreads(regress, c.threads);
+    regress->add_flag("--json", c.asJson, "Print JSON");
+    regress->callback([&chosen, command] { chosen = [command] { return runRegress(*command); }; });
+}
+
 }  // namespace
 
 void addBenchCommands(CLI::App& app, std::function<ExitCode()>& chosen) {
     CLI::App* bench = app.add_subcommand("bench", "Measure the renderer against itself");
     bench->require_subcommand(1);
     addAgreement(*bench, chosen);
+    addRegress(*bench, chosen);
 }
 
 }  // namespace etendue

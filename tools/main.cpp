@@ -12,6 +12,7 @@
 
 #include "renderer/estimator.h"
 #include "tools/bench_options.h"
+#include "tools/compare_command.h"
 #include "tools/lens_command.h"
 #include "tools/option_checks.h"
 #include "tools/render_command.h"
@@ -156,6 +157,7 @@ ExitCode run(int argc, char** argv) {
     ReplayCommand replay;
     addReplay(app, replay);
     std::function<ExitCode()> chosen;  // of the commands that have subcommands
+    addCompareCommand(app, chosen);
     addBenchCommands(app, chosen);
     addLensCommands(app, chosen);
     try {

@@ -10,6 +10,7 @@
 #include "tools/option_checks.h"
 #include "tools/regress_command.h"
 #include "tools/scene_options.h"
+#include "tools/suite_command.h"
 
 namespace etendue {
 
@@ -123,8 +124,8 @@ void addRegress(CLI::App& bench, Chosen& chosen) {
         ->add_option("--data", c.data,
                      "Folder of baseline.toml and references/; default: tests/regression")
         ->type_name("DIR");
-    CLI::Option* rebaseline = regress->add_flag(
-        "--rebaseline", c.rebaselines, "Take the noise that is measured for the baseline");
+    CLI::Option* rebaseline = regress->add_flag("--rebaseline", c.rebaselines,
+                                                "Take the noise that is measured for the baseline");
     regress
         ->add_flag("--make-references", c.makesReferences,
                    "Render the references anew, and test nothing")
@@ -140,11 +141,67 @@ void addRegress(CLI::App& bench, Chosen& chosen) {
     regress->callback([&chosen, command] { chosen = [command] { return runRegress(*command); }; });
 }
 
+void addSuite(CLI::App& bench, const std::string& commandLine, Chosen& chosen) {
+    const auto command = std::make_shared<SuiteCommand>();
+    SuiteCommand& c = *command;
+    c.commandLine = commandLine;
+    bench
+        .add_option("suite", c.inputs,
+                    "A suite such as scenes/suites/quick.toml, or scenes: files, or names in "
+                    "--scenes (docs/benchmarks.md)")
+        ->type_name("SUITE | SCENE");
+    bench
+        .add_option("-o,--output", c.output,
+                    "Folder for results and report; what it has of the same suite is not run again")
+        ->type_name("DIR");
+    bench.add_option("--scenes", c.folder, "Folder of scenes and of cameras/; default: scenes")
+        ->type_name("DIR");
+    bench
+        .add_option("--cameras", c.cameras,
+                    "Of scenes: names in cameras/, files, own: the scene's; default: own")
+        ->delimiter(',')
+        ->allow_extra_args(false)  // scenes may follow
+        ->type_name("LIST");
+    bench.add_option("--estimators", c.estimators, "Of scenes; default: pt,lt,bdpt")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember(estimatorKinds()).description(""))
+        ->type_name("LIST");
+    bench.add_option("--time", c.seconds, "Of each run, in place of the suite's; default: 2")
+        ->check(numberBetween(1e-3, 1e6))
+        ->type_name("SECONDS");
+    bench
+        .add_option("--reference-time", c.referenceSeconds,
+                    "Of each reference, in place of the suite's; default: 60")
+        ->check(numberBetween(1e-3, 1e7))
+        ->type_name("SECONDS");
+    bench
+        .add_option("--target", c.targetRelMse,
+                    "relMSE to tell the time to, in place of the suite's; default: 0.01")
+        ->check(positiveNumber())
+        ->type_name("X");
+    bench
+        .add_option("--seeds", c.seeds,
+                    "Runs of each estimator, in place of the suite's; default: 8")
+        ->check(CLI::Range(2, 1000).description(""))
+        ->type_name("N");
+    addSize(&bench, c.size, "Pixels of the pictures, in place of the suite's; default: 96,64");
+    addThreads(&bench, c.threads);
+    bench.callback([&chosen, &bench, command] {
+        if (!bench.get_subcommands().empty()) return;
+        if (command->output.empty()) throw CLI::RequiredError("-o");
+        chosen = [command] { return runSuite(*command); };
+    });
+}
+
 }  // namespace
 
-void addBenchCommands(CLI::App& app, std::function<ExitCode()>& chosen) {
-    CLI::App* bench = app.add_subcommand("bench", "Measure the renderer against itself");
-    bench->require_subcommand(1);
+void addBenchCommands(CLI::App& app, const std::string& commandLine,
+                      std::function<ExitCode()>& chosen) {
+    CLI::App* bench = app.add_subcommand(
+        "bench", "Measure estimators, cameras and settings against each other, or test them");
+    bench->require_subcommand(0, 1);
+    addSuite(*bench, commandLine, chosen);
     addAgreement(*bench, chosen);
     addRegress(*bench, chosen);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "config/config.h"
 
@@ -12,6 +13,8 @@ class App;
 namespace etendue {
 
 /// Adds the command; parsing sets `chosen` to what is to be run, if it is one of its own.
-void addBenchCommands(CLI::App& app, std::function<ExitCode()>& chosen);
+/// `commandLine`: as it was typed, for reports.
+void addBenchCommands(CLI::App& app, const std::string& commandLine,
+                      std::function<ExitCode()>& chosen);
 
 }  // namespace etendue

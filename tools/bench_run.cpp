@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <numeric>
 
 #include "lens/fit_cache.h"
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
+#include "statistics/flip.h"
 #include "tools/bench_lens.h"
 #include "tools/bench_reference.h"
 #include "tools/machine.h"
@@ -33,6 +34,10 @@ std::string fileName(const std::vector<std::string>& parts) {
 
 FrameWindow windowOf(const FilmSettings& film) {
     return {film.width, film.height, 0, 0, film.width, film.height};
+}
+
+double meanOf(const std::vector<float>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 /// One suite's run over one folder.
@@ -250,6 +255,7 @@ private:
                 {samples, seconds, imageErrors(film.channels().front().pixels, reference)});
         }
         const Picture picture = film.channels().front().pixels;
+        run.flip = meanOf(hdrFlip(picture, reference, loaded.film.width));
         writeExr(folder_.picture(configuration, seed), windowOf(loaded.film),
                  {{{"R", "G", "B"}, picture}}, {});
         appendRecord(folder_.records(), run);

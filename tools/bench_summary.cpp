@@ -53,6 +53,13 @@ std::vector<std::uint32_t> commonCounts(const Runs& runs) {
 }
 
 template <class Value>
+double medianOver(std::span<const std::size_t> chosen, const Value& value) {
+    std::vector<double> values;
+    for (const std::size_t i : chosen) values.push_back(value(i));
+    return median(std::move(values));
+}
+
+template <class Value>
 double meanOver(std::span<const std::size_t> chosen, const Value& value) {
     double sum = 0.0;
     for (const std::size_t i : chosen) sum += value(i);
@@ -69,11 +76,15 @@ public:
     std::size_t size() const { return runs_.size(); }
     const BenchCheckpoint& last(std::size_t i) const { return runs_[i]->checkpoints.back(); }
 
-    double efficiency(std::span<const std::size_t> chosen) const {
-        const double error =
-            meanOver(chosen, [&](std::size_t i) { return last(i).errors.relMse; }) -
-            referenceRelMse_;
-        return 1.0 / (error * meanOver(chosen, [&](std::size_t i) { return last(i).seconds; }));
+    /// relMse · seconds at the end of the runs: the error of one sample, which a run that got
+    /// little of the machine tells as well as another, times the time for one, whose median such a
+    /// run does not touch.
+    double cost(std::span<const std::size_t> chosen) const {
+        const double errorOfOne = meanOver(chosen, [&](std::size_t i) {
+            return (last(i).errors.relMse - referenceRelMse_) * last(i).samples;
+        });
+        return errorOfOne *
+               medianOver(chosen, [&](std::size_t i) { return last(i).seconds / last(i).samples; });
     }
 
     BenchResult summarize(double targetRelMse) const {
@@ -91,12 +102,11 @@ public:
         result.samples = median(samples);
         result.seconds = median(seconds);
         result.relMse = figureOf(size(), [&](std::span<const std::size_t> chosen) {
-            return meanOver(chosen, [&](std::size_t i) { return last(i).errors.relMse; }) -
-                   referenceRelMse_;
+            return cost(chosen) / result.seconds;
         });
         result.isBelowReference = !(result.relMse.value > 9.0 * referenceRelMse_);
         result.efficiency = figureOf(
-            size(), [&](std::span<const std::size_t> chosen) { return efficiency(chosen); });
+            size(), [&](std::span<const std::size_t> chosen) { return 1.0 / cost(chosen); });
         addSlope(result);
         addTimeToTarget(result, targetRelMse);
         return result;
@@ -153,7 +163,7 @@ private:
                 const auto at = [&](std::size_t i) -> const BenchCheckpoint& {
                     return *checkpointAt(*runs_[i], point.samples);
                 };
-                seconds.push_back(meanOver(chosen, [&](std::size_t i) { return at(i).seconds; }));
+                seconds.push_back(medianOver(chosen, [&](std::size_t i) { return at(i).seconds; }));
                 errors.push_back(
                     meanOver(chosen, [&](std::size_t i) { return at(i).errors.relMse; }) -
                     referenceRelMse_);
@@ -219,7 +229,7 @@ void relate(std::vector<BenchResult>::iterator begin, std::vector<BenchResult>::
         // Runs of one seed are neighbours in time, but their samples have nothing in common.
         result->ratio =
             figureOf(std::min(own.size(), first.size()), [&](std::span<const std::size_t> chosen) {
-                return own.efficiency(chosen) / first.efficiency(chosen);
+                return first.cost(chosen) / own.cost(chosen);
             });
     }
     for (auto point = begin->curve.rbegin(); point != begin->curve.rend(); ++point) {

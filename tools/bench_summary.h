@@ -30,7 +30,7 @@ struct BenchResult {
     std::vector<BenchPoint> curve;        // after counts that every seed reached
     std::optional<BenchFigure> slope;     // of log relMse over log samples
     double samples = 0.0, seconds = 0.0;  // medians at the end of the runs
-    BenchFigure relMse;                   // likewise
+    BenchFigure relMse;                   // after that time, at the median speed
     BenchFigure efficiency;               // 1 / (relMse · seconds), at the end of the runs
     BenchFigure ratio;  // of efficiency, to the first of the same scene and camera
     std::optional<BenchFigure> secondsToTarget;

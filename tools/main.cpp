@@ -158,7 +158,7 @@ ExitCode run(int argc, char** argv) {
     addReplay(app, replay);
     std::function<ExitCode()> chosen;  // of the commands that have subcommands
     addCompareCommand(app, chosen);
-    addBenchCommands(app, chosen);
+    addBenchCommands(app, render.commandLine, chosen);
     addLensCommands(app, chosen);
     try {
         app.parse(argc, argv);

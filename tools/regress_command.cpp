@@ -1,0 +1,270 @@
+#include "tools/regress_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lens/fit_cache.h"
+#include "renderer/parallel.h"
+#include "tools/progress.h"
+#include "tools/regress_report.h"
+#include "tools/scene_names.h"
+#include "tools/stop_request.h"
+#include "tools/write_file.h"
+
+namespace etendue {
+
+namespace {
+
+constexpr int seedCount = 32;
+constexpr int tileSize = 16;            // pixels
+constexpr int width = 48, height = 32;  // of a reference that is made
+constexpr std::uint32_t usualSamples = 16;
+const std::vector<std::string> allEstimators{"pt", "lt", "bdpt"};
+
+/// Of estimators that are held against one another.
+const std::pair<const char*, const char*> pairs[] = {{"pt", "bdpt"}, {"lt", "bdpt"}, {"lt", "pt"}};
+
+std::filesystem::path baselineFile(const RegressCommand& c) { return c.data / "baseline.toml"; }
+
+/// A run over all scenes and cameras.
+class RegressRun {
+public:
+    explicit RegressRun(const RegressCommand& command)
+        : command_(command),
+          scenes_(scenesCalled(command.scenes, command.folder)),
+          threads_(command.threads.value_or(hardwareThreads())) {
+        for (const std::string& name : command.cameras)
+            cameras_.push_back(cameraCalled(name, command.folder));
+        std::error_code error;
+        if (!command.makesReferences &&
+            !(command.rebaselines && !std::filesystem::exists(baselineFile(command), error)))
+            baseline_ = readBaseline(baselineFile(command));
+    }
+
+    void makeReferences() {
+        JobBar bar(scenes_.size() * cameras_.size(), 40.0);
+        forEachView(bar, [&](const NamedFile& scene, const NamedFile& camera) {
+            const std::string title = titleOf(scene, camera);
+            const LoadedScene loaded = load(scene, camera, width, height, bar);
+            ReferenceSettings settings;
+            settings.threads = threads_;
+            settings.tileSize = tileSize;
+            auto reference = makeReference(loaded, settings, goOn(bar, title));
+            if (!reference) return;
+            reference->scene = scene.name;
+            reference->camera = camera.name;
+            writeWholeFile(fileOf(scene, camera), referenceText(*reference));
+            bar.finishJob(title);
+        });
+    }
+
+    void test() {
+        JobBar bar(scenes_.size() * cameras_.size() * command_.estimators.size(), 3.0);
+        forEachView(bar, [&](const NamedFile& scene, const NamedFile& camera) {
+            testThrough(scene, camera, bar);
+        });
+    }
+
+    const RegressResults& results() const { return results_; }
+
+    /// Takes up what was measured, but for cells that are wrong: their noise is no standard.
+    Baseline newBaseline() const {
+        Baseline baseline = baseline_;
+        for (const CellResult& result : results_.cells) {
+            if (!result.isSound()) continue;
+            const BaselineRow* before = baseline_.of(result.cell);
+            BaselineRow row = before ? *before : BaselineRow{};
+            if (!before) {
+                row.cell = result.cell;
+                row.biasBound = boundFor(result.bias);
+                row.judgesRate = result.slope.verdict != SlopeVerdict::inconclusive;
+            }
+            row.samples = result.samples;
+            row.noise = result.noise.value;
+            row.interval = result.noise.interval;
+            baseline.put(row);
+        }
+        return baseline;
+    }
+
+private:
+    template <typename Body>
+    void forEachView(JobBar& bar, const Body& body) {
+        for (const NamedFile& scene : scenes_)
+            for (const NamedFile& camera : cameras_) {
+                if (isStopRequested()) results_.isComplete = false;
+                if (!results_.isComplete) break;
+                try {
+                    body(scene, camera);
+                } catch (const InputError& error) {
+                    results_.failures.push_back(
+                        {titleOf(scene, camera), error.what(), error.code()});
+                }
+            }
+        bar.clear();
+    }
+
+    static std::string titleOf(const NamedFile& scene, const NamedFile& camera) {
+        return fmt::format("{}, {}", scene.name, camera.name);
+    }
+
+    std::filesystem::path fileOf(const NamedFile& scene, const NamedFile& camera) const {
+        return referenceFile(command_.data / "references", scene.name, camera.name);
+    }
+
+    std::function<bool()> goOn(JobBar& bar, const std::string& title) {
+        return [this, &bar, title] {
+            bar.update(title, 0.0);
+            if (isStopRequested()) results_.isComplete = false;
+            return results_.isComplete;
+        };
+    }
+
+    void testThrough(const NamedFile& scene, const NamedFile& camera, JobBar& bar) {
+        const RegressReference reference = readReference(fileOf(scene, camera));
+        const LoadedScene loaded = load(scene, camera, reference.width, reference.height, bar);
+        const PictureRegions regions{reference.width, reference.height, tileSize};
+        std::vector<std::pair<std::string, HeldAgainst>> all;
+        for (const std::string& estimator : command_.estimators) {
+            CellResult result;
+            result.cell = {scene.name, camera.name, estimator};
+            result.isReferenceStale = reference.sceneHash != loaded.hash;
+            const ReferencePicture& picture =
+                pictureFor(reference, estimator, regions, fileOf(scene, camera));
+            const auto held = testCell(loaded, picture, regions, result, bar);
+            if (!held) return;
+            bar.finishJob(fmt::format("{}: {}", etendue::titleOf(result.cell), outcomeOf(result)));
+            results_.cells.push_back(result);
+            all.emplace_back(estimator, *held);
+        }
+        const auto of = [&](const std::string& estimator) {
+            return std::ranges::find(all, estimator, &std::pair<std::string, HeldAgainst>::first);
+        };
+        for (const auto& pair : pairs) {
+            const auto a = of(pair.first), b = of(pair.second);
+            if (a == all.end() || b == all.end()) continue;
+            results_.pairs.push_back({{scene.name, camera.name, pair.first},
+                                      pair.second,
+                                      judgeBetween(a->second, b->second, testCount(regions))});
+        }
+    }
+
+    std::optional<HeldAgainst> testCell(const LoadedScene& loaded, const ReferencePicture& picture,
+                                        const PictureRegions& regions, CellResult& result,
+                                        JobBar& bar) {
+        const BaselineRow* row = baseline_.of(result.cell);
+        result.samples = row ? row->samples : usualSamples;
+        if (command_.samples) result.samples = static_cast<std::uint32_t>(*command_.samples);
+        const auto place = std::ranges::find(allEstimators, result.cell.estimator);
+        SeedSettings settings;
+        settings.checkpoints = checkpointsUpTo(result.samples);
+        settings.seeds = seedCount;
+        // None of the estimators shares another's random numbers.
+        settings.firstSeed = command_.firstSeed + static_cast<std::uint64_t>(
+                                                      seedCount * (place - allEstimators.begin()));
+        settings.threads = threads_;
+        const auto rendered = renderSeeds(
+            loaded, testedPaths(loaded.estimator, result.cell.estimator, picture.leavesOut),
+            settings, goOn(bar, etendue::titleOf(result.cell)));
+        if (!rendered) return {};
+        result.seconds = rendered->seconds;
+        result.badSamples = rendered->badSamples;
+        const HeldAgainst held = holdAgainst(*rendered, result.samples, picture, regions);
+        if (row) result.biasBound = row->biasBound;
+        result.bias = judgeBias(held, result.biasBound, testCount(regions));
+        const auto errors = errorsBySeed(*rendered, picture);
+        const std::vector<double> samples(settings.checkpoints.begin(), settings.checkpoints.end());
+        result.slope = convergenceSlope(samples, errors);
+        result.judgesRate = row && row->judgesRate;
+        result.noise = noiseOf(errors, result.samples);
+        if (!row) return held;
+        result.noiseBefore = {row->noise, row->interval};
+        result.noiseVerdict = judgeNoise(*result.noiseBefore, result.noise, cellCount(), seedCount);
+        return held;
+    }
+
+    static const ReferencePicture& pictureFor(const RegressReference& reference,
+                                              const std::string& estimator,
+                                              const PictureRegions& regions,
+                                              const std::filesystem::path& file) {
+        const ReferencePicture* picture = reference.of(estimator);
+        if (!picture)
+            throw InputError(fmt::format("{}: no picture for {}", file.string(), estimator));
+        if (picture->means.front().size() != regions.count())
+            throw InputError(fmt::format("{}: {} regions a batch, expected {}", file.string(),
+                                         picture->means.front().size(), regions.count()));
+        return *picture;
+    }
+
+    std::size_t cellCount() const {
+        return scenes_.size() * cameras_.size() * command_.estimators.size();
+    }
+    /// Of cells, and of pairs: there are as many of either.
+    std::size_t testCount(const PictureRegions& regions) const {
+        return 2 * cellCount() * regions.count();
+    }
+
+    LoadedScene load(const NamedFile& scene, const NamedFile& camera, int across, int down,
+                     JobBar& bar) const {
+        LoadOptions options;
+        options.overrides = {fmt::format("film.width={}", across),
+                             fmt::format("film.height={}", down)};
+        options.threads = threads_;
+        options.fitCache = fitCacheDirectory();
+        options.fitProgress = [&](double, std::string_view stage) {
+            bar.update(fmt::format("{}: {}", titleOf(scene, camera), stage), 0.0);
+        };
+        options.camera = camera.file;
+        options.disperses = camera.isDispersive;
+        return loadScene(scene.file, options);
+    }
+
+    const RegressCommand& command_;
+    std::vector<NamedFile> scenes_, cameras_;
+    int threads_;
+    Baseline baseline_;
+    RegressResults results_;
+};
+
+ExitCode exitCodeOf(const RegressResults& results, bool mustPass) {
+    if (mustPass && !std::ranges::all_of(results.cells, &CellResult::passes))
+        return ExitCode::failure;
+    if (mustPass && std::ranges::any_of(results.pairs, [](const PairResult& pair) {
+            return pair.bias.verdict == BiasVerdict::biased;
+        }))
+        return ExitCode::failure;
+    if (!results.failures.empty()) return results.failures.front().code;
+    return results.isComplete ? ExitCode::success : ExitCode::stoppedEarly;
+}
+
+void sayFailures(const RegressResults& results) {
+    for (const RegressFailure& failure : results.failures)
+        say(fmt::format("etendue: {}: {}\n", failure.what, failure.why));
+}
+
+}  // namespace
+
+ExitCode runRegress(const RegressCommand& command) {
+    heedStopRequests();
+    RegressRun run(command);
+    if (command.makesReferences) {
+        run.makeReferences();
+        sayFailures(run.results());
+        return exitCodeOf(run.results(), false);
+    }
+    run.test();
+    if (command.asJson)
+        fmt::print("{}\n", regressJson(run.results()).text());
+    else
+        fmt::print("{}", regressText(run.results()));
+    sayFailures(run.results());
+    if (!command.rebaselines) return exitCodeOf(run.results(), true);
+    writeWholeFile(baselineFile(command), baselineText(run.newBaseline()));
+    fmt::print("{}", rebaselineText(run.results().cells));
+    // That the noise has changed is what was asked about; what is wrong in itself was not taken.
+    if (!std::ranges::all_of(run.results().cells, &CellResult::isSound)) return ExitCode::failure;
+    return exitCodeOf(run.results(), false);
+}
+
+}  // namespace etendue

@@ -1,0 +1,168 @@
+#include "tools/regress_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "statistics/image_error.h"
+
+namespace etendue {
+
+namespace {
+
+constexpr double confidence = 0.99;
+
+MeanTerm termOf(const RegionMeans& pictures, std::size_t region, int pixels, double sign) {
+    std::vector<double> values;
+    for (const std::vector<double>& means : pictures.means) values.push_back(means[region]);
+    const double samples = static_cast<double>(pictures.samples * values.size()) * pixels;
+    return {sign, summarize(values), pictures.largest / samples};
+}
+
+/// Tested less reference, times `sign`.
+std::vector<MeanTerm> termsOf(const HeldAgainst& held, std::size_t region, double sign) {
+    const int pixels = held.regions.pixels()[region];
+    return {termOf(held.tested, region, pixels, sign),
+            termOf(held.reference, region, pixels, -sign)};
+}
+
+BiasJudgement judge(const PictureRegions& regions, std::size_t tests, double mean,
+                    const std::function<std::vector<MeanTerm>(std::size_t region)>& termsOfRegion) {
+    BiasJudgement result;
+    result.level = sidakLevel(1.0 - confidence, tests);
+    const std::size_t count = regions.count();
+    for (std::size_t region = 0; region < count; ++region) {
+        const SumTest test = testSum(termsOfRegion(region));
+        result.smallestP = std::min(result.smallestP, test.guardedP);
+        if (test.p <= result.level && test.guardedP > result.level) ++result.testsInDoubt;
+        if (region + 1 < count) continue;
+        result.relativeBias = test.difference / mean;
+        result.halfWidth = test.halfWidth / std::abs(mean);
+    }
+    if (result.smallestP <= result.level) result.verdict = BiasVerdict::biased;
+    return result;
+}
+
+/// Of log noise: intervals are even on that scale.
+double spreadOf(const Noise& noise) {
+    return std::log(noise.interval.high / noise.interval.low) /
+           (2.0 * studentQuantile(confidence, 1e6));
+}
+
+}  // namespace
+
+SumTest testSum(std::span<const MeanTerm> terms) {
+    SumTest result;
+    double variance = 0.0, quartic = 0.0;
+    double least = std::numeric_limits<double>::infinity();
+    for (const MeanTerm& term : terms) {
+        const double v = term.summary.standardError * term.summary.standardError;
+        const double freedom = static_cast<double>(term.summary.count) - 1.0;
+        result.difference += term.sign * term.summary.mean;
+        variance += v;
+        quartic += v * v / freedom;
+        least = std::min(least, freedom);
+    }
+    const double size = std::abs(result.difference);
+    if (!(variance > 0.0)) {
+        result.p = result.guardedP = size == 0.0 ? 1.0 : 0.0;
+        return result;
+    }
+    const double freedom = std::max(least, variance * variance / quartic);  // Welch–Satterthwaite
+    result.halfWidth = studentQuantile(confidence, freedom) * std::sqrt(variance);
+    result.p = studentTwoSidedP(size / std::sqrt(variance), freedom);
+    // What one of the means on the darker side may have missed.
+    double step = 0.0;
+    for (const MeanTerm& term : terms)
+        if (term.sign * result.difference < 0.0) step = std::max(step, term.step);
+    result.guardedP =
+        std::max(result.p, studentTwoSidedP(size / std::sqrt(variance + size * step), freedom));
+    return result;
+}
+
+HeldAgainst holdAgainst(const SeedPictures& rendered, std::uint32_t samples,
+                        const ReferencePicture& reference, const PictureRegions& regions) {
+    HeldAgainst result{regions,
+                       {{}, rendered.largest, samples},
+                       {reference.means, reference.largest, reference.samples},
+                       rendered.badSamples};
+    for (const Picture& picture : rendered.pictures.back())
+        result.tested.means.push_back(regions.meansOf(picture));
+    return result;
+}
+
+BiasJudgement judgeBias(const HeldAgainst& tested, std::optional<double> bound, std::size_t tests) {
+    const double mean = termsOf(tested, tested.regions.count() - 1, 1.0)[1].summary.mean;
+    BiasJudgement result = judge(tested.regions, tests, mean,
+                                 [&](std::size_t region) { return termsOf(tested, region, 1.0); });
+    if (tested.badSamples > 0) result.verdict = BiasVerdict::biased;
+    if (result.verdict != BiasVerdict::biased && bound)
+        result.verdict = std::abs(result.relativeBias) + result.halfWidth < *bound
+                             ? BiasVerdict::unbiased
+                             : BiasVerdict::tooNoisy;
+    return result;
+}
+
+BiasJudgement judgeBetween(const HeldAgainst& a, const HeldAgainst& b, std::size_t tests) {
+    const bool isOneReference = a.reference.means == b.reference.means;
+    const double mean = termsOf(b, b.regions.count() - 1, 1.0)[0].summary.mean;
+    return judge(a.regions, tests, mean, [&](std::size_t region) {
+        std::vector<MeanTerm> terms = termsOf(a, region, 1.0);
+        const std::vector<MeanTerm> others = termsOf(b, region, -1.0);
+        if (isOneReference) return std::vector{terms[0], others[0]};
+        terms.insert(terms.end(), others.begin(), others.end());
+        return terms;
+    });
+}
+
+std::vector<std::vector<double>> errorsBySeed(const SeedPictures& rendered,
+                                              const ReferencePicture& reference) {
+    std::vector<std::vector<double>> errors(rendered.pictures.front().size());
+    for (const std::vector<Picture>& pictures : rendered.pictures)
+        for (std::size_t seed = 0; seed < pictures.size(); ++seed)
+            errors[seed].push_back(imageErrors(pictures[seed], reference.pixels).relMse -
+                                   reference.noise);
+    return errors;
+}
+
+Noise noiseOf(const std::vector<std::vector<double>>& errors, std::uint32_t samples) {
+    const auto meanOf = [&](std::span<const std::size_t> seeds) {
+        double sum = 0.0;
+        for (const std::size_t seed : seeds) sum += errors[seed].back();
+        return samples * sum / static_cast<double>(seeds.size());
+    };
+    std::vector<std::size_t> all(errors.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+    return {meanOf(all), bootstrapInterval(all.size(), meanOf, confidence, 10'000, 0)};
+}
+
+NoiseVerdict judgeNoise(const Noise& before, const Noise& now, std::size_t cells, int seeds) {
+    // Without noise there is no logarithm.
+    if (!(now.interval.low > 0.0) || !(before.interval.low > 0.0))
+        return now.value > before.interval.high ? NoiseVerdict::worse : NoiseVerdict::same;
+    const double level = sidakLevel(1.0 - confidence, cells);
+    const double reach =
+        studentQuantile(1.0 - level, seeds - 1.0) * std::hypot(spreadOf(before), spreadOf(now));
+    const double change = std::log(now.value / before.value);
+    if (std::abs(change) <= reach) return NoiseVerdict::same;
+    return change > 0.0 ? NoiseVerdict::worse : NoiseVerdict::better;
+}
+
+std::vector<std::uint32_t> checkpointsUpTo(std::uint32_t samples) {
+    std::vector<std::uint32_t> result;
+    for (std::uint32_t n = samples; n > 0 && result.size() < 7; n /= 2) result.push_back(n);
+    std::ranges::reverse(result);
+    return result;
+}
+
+std::optional<double> boundFor(const BiasJudgement& bias) {
+    constexpr double room = 1.5;  // of the half width beside the interval
+    for (const double bound : {0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5})
+        if ((1.0 + room) * bias.halfWidth < bound &&
+            std::abs(bias.relativeBias) + bias.halfWidth < bound)
+            return bound;
+    return {};
+}
+
+}  // namespace etendue

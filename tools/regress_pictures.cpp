@@ -1,0 +1,130 @@
+#include "tools/regress_pictures.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+#include "renderer/parallel.h"
+#include "tools/watched_estimator.h"
+
+namespace etendue {
+
+namespace {
+
+/// What one seed has brought.
+struct OneSeed {
+    std::vector<Picture> pictures;  // [checkpoint]
+    double largest = 0.0;
+    LeftOutMeans leftOut{};
+    std::uint64_t badSamples = 0;
+    bool isComplete = false;
+};
+
+OneSeed renderSeed(const LoadedScene& loaded, const CommonPathsSettings& paths,
+                   const SeedSettings& settings, std::uint64_t seed,
+                   const std::function<bool()>& goOn) {
+    const FilmSettings& frame = loaded.film;
+    const Filter filter(frame.filter, frame.filterRadius);
+    Film film({frame.width, frame.height, 0, 0, frame.width, frame.height}, {}, frame.color);
+    const auto estimator = makeCommonPaths(*loaded.scene, *loaded.camera, paths);
+    const WatchedEstimator watched(*estimator, loaded);
+    OneSeed result;
+    RenderSettings render;
+    render.seed = seed;
+    render.sampler = settings.sampler;
+    std::uint32_t done = 0;
+    for (const std::uint32_t checkpoint : settings.checkpoints) {
+        render.firstSample = done;
+        render.samples = checkpoint - done;
+        const RenderResult part =
+            etendue::render(*loaded.scene, *loaded.camera, watched, filter, film, render,
+                            [&](const RenderProgress&) { return goOn(); });
+        if (part.wasInterrupted) return result;
+        done = checkpoint;
+        result.badSamples += part.badSampleCount;
+        result.pictures.push_back(film.channels().front().pixels);
+    }
+    result.largest = watched.largest();
+    result.leftOut = estimator->leftOut(
+        done, static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height),
+        frame.color);
+    result.isComplete = true;
+    return result;
+}
+
+/// Calls body(i, j, x0, y0, x1, y1) for each tile, row by row.
+template <typename Body>
+void forEachTile(const PictureRegions& regions, const Body& body) {
+    for (int y = 0; y < regions.height; y += regions.tileSize)
+        for (int x = 0; x < regions.width; x += regions.tileSize)
+            body(x, y, std::min(x + regions.tileSize, regions.width),
+                 std::min(y + regions.tileSize, regions.height));
+}
+
+}  // namespace
+
+std::optional<SeedPictures> renderSeeds(const LoadedScene& loaded, const CommonPathsSettings& paths,
+                                        const SeedSettings& settings,
+                                        const std::function<bool()>& goOn) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto count = static_cast<std::size_t>(settings.seeds);
+    std::vector<OneSeed> seeds(count);
+    std::atomic<bool> isOver{false};
+    std::mutex asking;
+    const auto goesOn = [&] {
+        if (isOver) return false;
+        const std::lock_guard lock(asking);
+        if (!goOn()) isOver = true;
+        return !isOver;
+    };
+    parallelFor(count, settings.threads, [&](std::size_t i) {
+        if (goesOn())
+            seeds[i] = renderSeed(loaded, paths, settings, settings.firstSeed + i, goesOn);
+    });
+    SeedPictures result;
+    result.pictures.resize(settings.checkpoints.size());
+    for (OneSeed& seed : seeds) {
+        if (!seed.isComplete) return {};
+        for (std::size_t step = 0; step < settings.checkpoints.size(); ++step)
+            result.pictures[step].push_back(std::move(seed.pictures[step]));
+        result.largest = std::max(result.largest, seed.largest);
+        for (std::size_t c = 0; c < pathClassCount; ++c)
+            result.leftOut[c] += seed.leftOut[c] / static_cast<double>(count);
+        result.badSamples += seed.badSamples;
+    }
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+std::size_t PictureRegions::count() const { return pixels().size(); }
+
+std::vector<int> PictureRegions::pixels() const {
+    std::vector<int> result;
+    forEachTile(*this, [&](int x0, int y0, int x1, int y1) {
+        result.insert(result.end(), 3, (x1 - x0) * (y1 - y0));
+    });
+    result.push_back(width * height);
+    return result;
+}
+
+std::vector<double> PictureRegions::meansOf(const Picture& picture) const {
+    std::vector<double> means;
+    double whole = 0.0;
+    forEachTile(*this, [&](int x0, int y0, int x1, int y1) {
+        for (std::size_t color = 0; color < 3; ++color) {
+            double sum = 0.0;
+            for (int y = y0; y < y1; ++y)
+                for (int x = x0; x < x1; ++x)
+                    sum += static_cast<double>(
+                        picture[3 * static_cast<std::size_t>(y * width + x) + color]);
+            means.push_back(sum / ((x1 - x0) * (y1 - y0)));
+            whole += sum;
+        }
+    });
+    means.push_back(whole / (3.0 * width * height));
+    return means;
+}
+
+}  // namespace etendue

@@ -220,16 +220,27 @@ void appendRecord(const std::filesystem::path& file, const BenchRun& run) {
     append(file, jsonOf(run));
 }
 
+namespace {
+
+/// As RFC 4180 quotes.
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return result + '"';
+}
+
+}  // namespace
+
 std::string csvOf(const std::vector<BenchRun>& runs) {
     std::string csv =
         "scene,camera,variant,estimator,seed,samples,seconds,mse,relMse,relMseTrimmed,mae,"
         "meanError\n";
     for (const BenchRun& run : runs)
         for (const BenchCheckpoint& c : run.checkpoints)
-            csv += fmt::format("\"{}\",\"{}\",\"{}\",{},{},{},{},{},{},{},{},{}\n",
-                               run.configuration.scene, run.configuration.camera,
-                               run.configuration.variant, run.configuration.estimator, run.seed,
-                               c.samples, c.seconds, c.errors.mse, c.errors.relMse,
+            csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                               quoted(run.configuration.scene), quoted(run.configuration.camera),
+                               quoted(run.configuration.variant), run.configuration.estimator,
+                               run.seed, c.samples, c.seconds, c.errors.mse, c.errors.relMse,
                                c.errors.relMseTrimmed, c.errors.mae, c.errors.meanError);
     return csv;
 }

@@ -254,7 +254,8 @@ std::string figureText(const BenchFigure& figure) {
 double smallSampleConfidence(double wanted, std::size_t count) {
     const double n = static_cast<double>(count);
     const double t = studentQuantile(wanted, n - 1.0) * std::sqrt(n / (n - 1.0));
-    return 1.0 - normalTwoSidedP(t);
+    constexpr double wholeRange = 1.0 - 1e-6;  // of the draws: few observations have no more
+    return std::min(1.0 - normalTwoSidedP(t), wholeRange);
 }
 
 std::vector<BenchResult> summarizeBench(const BenchRecords& records, double targetRelMse) {

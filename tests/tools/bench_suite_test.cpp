@@ -1,0 +1,94 @@
+// Suites: what they may say, and what they are refused for.
+#include "tools/bench_suite.h"
+
+#include <doctest/doctest.h>
+
+#include "tests/support/temporary_folder.h"
+
+using namespace etendue;
+
+namespace {
+
+/// scenes/box, scenes/hall, scenes/cameras/wide, and a suite beside them.
+struct Files {
+    Files() {
+        for (const char* name : {"box", "hall", "cameras", "suites"})
+            std::filesystem::create_directories(folder / name);
+        folder.write("box/scene.toml", "");
+        folder.write("hall/scene.toml", "");
+        folder.write("cameras/wide.toml", "[camera]\n");
+    }
+    BenchSuite load(const std::string& text) {
+        folder.write("suites/suite.toml", text);
+        return loadBenchSuite(folder / "suites/suite.toml");
+    }
+    std::string refusal(const std::string& text) {
+        try {
+            load(text);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "accepted";
+    }
+    TemporaryFolder folder;
+};
+
+bool has(const std::string& text, const std::string& fragment) {
+    return text.find(fragment) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("Bench suite: every scene of a group through every camera") {
+    Files files;
+    const BenchSuite suite = files.load(R"(
+[suite]
+title = "All"
+seeds = 3
+[[group]]
+cameras = ["own", "wide"]
+estimators = ["pt", "bdpt"]
+[[group.variant]]
+name = "few"
+set = ["camera.terms=8"]
+[[group.variant]]
+name = "many"
+set = ["camera.terms=64"]
+)");
+    CHECK(suite.title == "All");
+    CHECK(suite.views.size() == 4);
+    CHECK(titleOf(suite.views.front()) == "box, own");
+    CHECK(titleOf(suite.views.back()) == "hall, wide");
+    CHECK(suite.views.front().variants.at(1).overrides.at(0) == "camera.terms=64");
+    CHECK(suite.runCount() == 4 * 2 * 2 * 3);
+}
+
+TEST_CASE("Bench suite: its key changes with whatever its results depend on") {
+    Files files;
+    const std::string text = "[suite]\nseconds = 1\n[[group]]\nscenes = \"box\"\n";
+    const std::string key = files.load(text).key();
+    CHECK(files.load(text).key() == key);
+    for (const char* more :
+         {"estimators = [\"pt\"]\n", "cameras = [\"wide\"]\n", "set = [\"film.filter=gaussian\"]\n",
+          "[[group.variant]]\nname = \"few\"\nset = [\"camera.terms=8\"]\n"}) {
+        CAPTURE(std::string(more));
+        CHECK(files.load(text + more).key() != key);
+    }
+    CHECK(files.load("[suite]\nseconds = 2\n[[group]]\nscenes = \"box\"\n").key() != key);
+}
+
+TEST_CASE("Bench suite: mistakes are named with their line") {
+    Files files;
+    CHECK(has(files.refusal("[suite]\n"), "group"));
+    CHECK(has(files.refusal("[[group]]\nscenes = \"bix\"\n"), "did you mean \"box\""));
+    CHECK(has(files.refusal("[[group]]\ncameras = [\"wise\"]\n"), "did you mean \"wide\""));
+    CHECK(has(files.refusal("[[group]]\nestimators = [\"vcm\"]\n"),
+              "suite.toml:2: group[0].estimators: no estimator is called \"vcm\""));
+    CHECK(has(files.refusal("[suite]\nseeds = 1\n[[group]]\n"), "suite.toml:2: suite.seeds"));
+    CHECK(has(files.refusal("[suite]\nseed = 4\n[[group]]\n"), "did you mean 'seeds'"));
+    CHECK(has(files.refusal("[[group]]\nscenes = \"box\"\n[[group]]\nscenes = \"box\"\n"),
+              "box, own is in another group, too"));
+    CHECK(has(files.refusal("[[group]]\n[[group.variant]]\nname = \"a\"\n[[group.variant]]\nname = "
+                            "\"a\"\n"),
+              "another variant's"));
+}

@@ -8,8 +8,9 @@ set -eu
 # The one list of packages.
 packages="g++ cmake ninja-build
     libembree-dev libopenimageio-dev libeigen3-dev libtinyobjloader-dev libtbb-dev
-    libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev libboost-dev"
-test_packages="doctest-dev assimp-testmodels glmark2-data glslang-tools"
+    libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev libboost-dev
+    node-d3-scale node-d3-shape node-d3-selection"
+test_packages="doctest-dev assimp-testmodels glmark2-data glslang-tools chromium nodejs npm"
 ci_packages="clang clang-format clang-tidy"
 
 case "${1:-}" in
@@ -21,6 +22,11 @@ esac
 
 missing=""
 for package in $packages; do
+    # Node that is there already, from wherever, stays: Debian's npm would throw it out.
+    case "$package" in
+        nodejs) ! command -v node >/dev/null || continue ;;
+        npm) ! command -v npm >/dev/null || continue ;;
+    esac
     status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
     [ "$status" = installed ] || missing="$missing $package"
 done

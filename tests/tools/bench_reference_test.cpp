@@ -1,0 +1,101 @@
+// References: how far they say they can be trusted, and that they are rendered once.
+#include "tools/bench_reference.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "statistics/statistics.h"
+#include "tests/support/scenes.h"
+
+using namespace etendue;
+
+namespace {
+
+constexpr const char* scene = R"(
+[film]
+width = 24
+height = 16
+[camera]
+from = [0, 0.5, 3]
+to = [0, 0, 0]
+[[material]]
+name = "wall"
+color = [0.5, 0.6, 0.7]
+[[mesh]]
+shape = "sphere"
+material = "wall"
+[[mesh]]
+shape = "rectangle"
+material = "wall"
+transform = [{scale = 3}, {rotate = [1, 0, 0, -90]}, {translate = [0, -1, 0]}]
+[[light]]
+type = "point"
+position = [2, 2, 2]
+intensity = [9, 8, 7]
+[[light]]
+type = "constant"
+radiance = [0.2, 0.2, 0.2]
+)";
+
+const auto patiently = [](double) { return true; };
+
+}  // namespace
+
+TEST_CASE("Bench reference: its error is what it says") {
+    const LoadedScene loaded = sceneFromText(scene, {"film.width=60", "film.height=40"});
+    const Reference a = referenceFor(loaded, {"pt", 0.1, 1}, {}, patiently).value();
+    const Reference b = referenceFor(loaded, {"bdpt", 0.2, 1}, {}, patiently).value();
+    CHECK(a.samples >= 16);
+    // Of each value: squared difference less the sum of the variances, whose expectation is zero.
+    std::vector<double> excess;
+    double said = 0.0;
+    for (std::size_t i = 0; i < a.picture.size(); ++i) {
+        const double difference = static_cast<double>(a.picture[i]) - b.picture[i];
+        const double variance = static_cast<double>(a.variance[i]) + b.variance[i];
+        const double scale = b.picture[i] * b.picture[i] + 0.01;
+        excess.push_back((difference * difference - variance) / scale);
+        said += variance / scale;
+    }
+    said /= static_cast<double>(excess.size());
+    CHECK(said == doctest::Approx(a.relMse + b.relMse).epsilon(0.05));
+    // Three channels of a pixel move together: as if there were a third of them. Four standard
+    // errors; and the bound is tight enough to see an error of a quarter.
+    const Summary summary = summarize(excess);
+    const double standardError = std::sqrt(3.0) * summary.standardError;
+    CHECK(std::abs(summary.mean) < 4.0 * standardError);
+    CHECK(standardError < 0.25 / 4.0 * said);
+}
+
+TEST_CASE("Bench reference: rendered once, and anew for whatever it depends on") {
+    const TemporaryFolder cache;
+    const LoadedScene loaded = sceneFromText(scene);
+    const ReferenceSettings settings{"pt", 0.01, 1};
+    const Reference first = referenceFor(loaded, settings, cache.path(), patiently).value();
+    int asked = 0;
+    const auto counting = [&](double) {
+        ++asked;
+        return true;
+    };
+    const Reference again = referenceFor(loaded, settings, cache.path(), counting).value();
+    CHECK(asked == 0);
+    CHECK(again.picture == first.picture);
+    CHECK(again.variance == first.variance);
+    CHECK(again.samples == first.samples);
+    CHECK(again.relMse == first.relMse);
+    CHECK(again.key == first.key);
+    const auto keyOf = [&](const LoadedScene& other, const ReferenceSettings& changed) {
+        return referenceFor(other, changed, {}, patiently).value().key;
+    };
+    CHECK(keyOf(loaded, {"lt", 0.01, 1}) != first.key);
+    CHECK(keyOf(loaded, {"pt", 0.02, 1}) != first.key);
+    CHECK(keyOf(loaded, {"pt", 0.01, 2}) == first.key);
+    CHECK(keyOf(sceneFromText(scene, {"film.width=25"}), settings) != first.key);
+}
+
+TEST_CASE("Bench reference: given up, it is not kept") {
+    const TemporaryFolder cache;
+    const LoadedScene loaded = sceneFromText(scene);
+    CHECK(!referenceFor(loaded, {"pt", 1.0, 1}, cache.path(), [](double) { return false; }));
+    CHECK(cache.names().empty());
+}

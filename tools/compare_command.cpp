@@ -10,7 +10,7 @@
 #include "renderer/image_io.h"
 #include "statistics/flip.h"
 #include "statistics/image_error.h"
-#include "statistics/tile_z_test.h"
+#include "statistics/tile_means.h"
 #include "tools/false_color.h"
 #include "tools/json.h"
 #include "tools/progress.h"
@@ -248,7 +248,7 @@ void writeErrorImage(const std::filesystem::path& file, const LightPicture& pict
 
 }  // namespace
 
-ExitCode runCompare(const CompareCommand& command) {
+CompareReport compareFiles(const CompareCommand& command) {
     checkErrorImage(command.errorImage);
     const LightPicture picture = readPicture(command.picture);
     const LightPicture reference = readPicture(command.reference);
@@ -259,14 +259,18 @@ ExitCode runCompare(const CompareCommand& command) {
                         reference.file.string(), reference.width, reference.height));
     const Comparison comparison = compare(command, picture, reference);
     writeErrorImage(command.errorImage, picture, reference);
-    if (command.asJson)
-        fmt::print("{}\n", comparisonJson(command, comparison).text());
-    else
-        fmt::print("{}", comparisonText(command, comparison));
-    for (const std::string& message : comparison.exceeded)
-        say(fmt::format("etendue: {}\n", message));
     const bool isTold = comparison.z && !comparison.z->agree();
-    return isTold || !comparison.exceeded.empty() ? ExitCode::failure : ExitCode::success;
+    return {command.asJson ? comparisonJson(command, comparison).text() + "\n"
+                           : comparisonText(command, comparison),
+            comparison.exceeded,
+            isTold || !comparison.exceeded.empty() ? ExitCode::failure : ExitCode::success};
+}
+
+ExitCode runCompare(const CompareCommand& command) {
+    const CompareReport report = compareFiles(command);
+    fmt::print("{}", report.text);
+    for (const std::string& message : report.exceeded) say(fmt::format("etendue: {}\n", message));
+    return report.code;
 }
 
 }  // namespace etendue

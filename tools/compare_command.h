@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "config/config.h"
 
@@ -26,8 +28,15 @@ struct CompareCommand {
     bool asJson = false;
 };
 
-/// Prints the errors; failure if one exceeds its limit or the means are told apart. Throws
-/// InputError for pictures that cannot be compared.
+struct CompareReport {
+    std::string text;                   // a table, or JSON
+    std::vector<std::string> exceeded;  // a message for each limit
+    ExitCode code = ExitCode::success;  // failure if a limit is exceeded or the means told apart
+};
+/// Writes the error image, prints nothing. Throws InputError for pictures that cannot be compared.
+CompareReport compareFiles(const CompareCommand& command);
+
+/// Prints what compareFiles() says.
 ExitCode runCompare(const CompareCommand& command);
 
 /// Adds the command; parsing sets `chosen` to what is to be run, if it is this one.

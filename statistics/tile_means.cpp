@@ -1,4 +1,4 @@
-#include "statistics/tile_z_test.h"
+#include "statistics/tile_means.h"
 
 #include <algorithm>
 #include <cmath>

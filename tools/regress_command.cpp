@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lens/fit_cache.h"
+#include "renderer/content_hash.h"
 #include "renderer/parallel.h"
 #include "tools/progress.h"
 #include "tools/regress_report.h"
@@ -20,7 +21,13 @@ constexpr int seedCount = 32;
 constexpr int tileSize = 16;            // pixels
 constexpr int width = 48, height = 32;  // of a reference that is made
 constexpr std::uint32_t usualSamples = 16;
-const std::vector<std::string> allEstimators{"pt", "lt", "bdpt"};
+
+/// Every cell has random numbers of its own, and none those of a reference; which they are depends
+/// on its names alone.
+std::uint64_t firstSeedOf(const RegressCell& cell) {
+    const std::string hash = contentHash({}, {cell.scene, cell.camera, cell.estimator});
+    return (std::uint64_t{1} << 40) + seedCount * std::stoull(hash.substr(0, 8), nullptr, 16);
+}
 
 /// Of estimators that are held against one another.
 const std::pair<const char*, const char*> pairs[] = {{"pt", "bdpt"}, {"lt", "bdpt"}, {"lt", "pt"}};
@@ -156,13 +163,10 @@ private:
         const BaselineRow* row = baseline_.of(result.cell);
         result.samples = row ? row->samples : usualSamples;
         if (command_.samples) result.samples = static_cast<std::uint32_t>(*command_.samples);
-        const auto place = std::ranges::find(allEstimators, result.cell.estimator);
         SeedSettings settings;
         settings.checkpoints = checkpointsUpTo(result.samples);
         settings.seeds = seedCount;
-        // None of the estimators shares another's random numbers.
-        settings.firstSeed = command_.firstSeed + static_cast<std::uint64_t>(
-                                                      seedCount * (place - allEstimators.begin()));
+        settings.firstSeed = command_.firstSeed + firstSeedOf(result.cell);
         settings.threads = threads_;
         const auto rendered = renderSeeds(
             loaded, testedPaths(loaded.estimator, result.cell.estimator, picture.leavesOut),
@@ -254,17 +258,20 @@ ExitCode runRegress(const RegressCommand& command) {
         return exitCodeOf(run.results(), false);
     }
     run.test();
+    const RegressResults& results = run.results();
+    const Baseline after = command.rebaselines ? run.newBaseline() : Baseline();
+    // On disk before it is printed: nobody has seen what was not kept.
+    if (command.rebaselines) writeWholeFile(baselineFile(command), baselineText(after));
     if (command.asJson)
-        fmt::print("{}\n", regressJson(run.results()).text());
+        fmt::print("{}\n", regressJson(results).text());
     else
-        fmt::print("{}", regressText(run.results()));
-    sayFailures(run.results());
-    if (!command.rebaselines) return exitCodeOf(run.results(), true);
-    writeWholeFile(baselineFile(command), baselineText(run.newBaseline()));
-    fmt::print("{}", rebaselineText(run.results().cells));
+        fmt::print("{}", command.rebaselines ? rebaselineText(results.cells, after)
+                                             : regressText(results));
+    sayFailures(results);
+    if (!command.rebaselines) return exitCodeOf(results, true);
     // That the noise has changed is what was asked about; what is wrong in itself was not taken.
-    if (!std::ranges::all_of(run.results().cells, &CellResult::isSound)) return ExitCode::failure;
-    return exitCodeOf(run.results(), false);
+    if (!std::ranges::all_of(results.cells, &CellResult::isSound)) return ExitCode::failure;
+    return exitCodeOf(results, false);
 }
 
 }  // namespace etendue

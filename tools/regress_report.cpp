@@ -183,24 +183,32 @@ Json regressJson(const RegressResults& results) {
                          {"failures", failures}});
 }
 
-std::string rebaselineText(const std::vector<CellResult>& cells) {
-    std::vector<std::vector<std::string>> table{
-        {"scene", "camera", "estimator", "old", "99 %", "", "new", "99 %", "change %", ""}};
+std::string rebaselineText(const std::vector<CellResult>& cells, const Baseline& after) {
+    std::vector<std::vector<std::string>> table{{"scene", "camera", "estimator", "old", "99 %", "",
+                                                 "new", "99 %", "change %", "bias bound %", "rate",
+                                                 ""}};
     const auto interval = [](const Noise& noise) {
         return fmt::format("{:.4g}–{:.4g}", noise.interval.low, noise.interval.high);
     };
     for (const CellResult& c : cells) {
-        table.push_back(
-            {c.cell.scene, c.cell.camera, c.cell.estimator,
-             c.noiseBefore ? fmt::format("{:.4g}", c.noiseBefore->value) : "-",
-             c.noiseBefore ? interval(*c.noiseBefore) : "", "→",
-             fmt::format("{:.4g}", c.noise.value), interval(c.noise),
-             c.noiseBefore
-                 ? fmt::format("{:+.2f}", perCent * (c.noise.value / c.noiseBefore->value - 1.0))
-                 : "",
-             c.isSound() ? "" : "NOT TAKEN: " + outcomeOf(c)});
+        std::vector<std::string> row{c.cell.scene, c.cell.camera, c.cell.estimator, "-", "", "→"};
+        if (c.noiseBefore) {
+            row[3] = fmt::format("{:.4g}", c.noiseBefore->value);
+            row[4] = interval(*c.noiseBefore);
+        }
+        row.push_back(fmt::format("{:.4g}", c.noise.value));
+        row.push_back(interval(c.noise));
+        row.push_back(
+            c.noiseBefore
+                ? fmt::format("{:+.2f}", perCent * (c.noise.value / c.noiseBefore->value - 1.0))
+                : "");
+        const BaselineRow* kept = after.of(c.cell);
+        row.push_back(kept ? boundText(kept->biasBound) : "");
+        row.push_back(!kept ? "" : kept->judgesRate ? "judged" : "not judged");
+        row.push_back(c.isSound() ? "" : "NOT TAKEN: " + outcomeOf(c));
+        table.push_back(row);
     }
-    return "\n" + alignedTable(table, "lllrrlrrrl");
+    return alignedTable(table, "lllrrlrrrrll");
 }
 
 }  // namespace etendue

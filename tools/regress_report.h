@@ -61,7 +61,7 @@ std::string outcomeOf(const CellResult& cell);
 std::string regressText(const RegressResults& results);
 Json regressJson(const RegressResults& results);
 
-/// Old and new noise of each cell that was measured.
-std::string rebaselineText(const std::vector<CellResult>& cells);
+/// Old and new noise of each cell that was measured, and what its row in `after` asks of it.
+std::string rebaselineText(const std::vector<CellResult>& cells, const Baseline& after);
 
 }  // namespace etendue

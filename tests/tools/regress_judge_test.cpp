@@ -1,0 +1,153 @@
+// The judge of regression tests is judged: it finds what is wrong, and passes what is right.
+#include "tools/regress_judge.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tools/agreement_judge.h"
+
+using namespace etendue;
+
+namespace {
+
+const PictureRegions regions{32, 16, 16};  // two tiles
+
+/// Pictures of brightness 1 with noise, all times `factor` in the left tile.
+std::vector<Picture> pictures(std::size_t count, std::uint32_t seed, double noise,
+                              double factor = 1.0) {
+    std::mt19937 generator(seed);
+    std::normal_distribution<double> normal(0.0, noise);
+    std::vector<Picture> result(count, Picture(3 * 32 * 16));
+    for (Picture& picture : result)
+        for (std::size_t i = 0; i < picture.size(); ++i) {
+            const double mean = i / 3 % 32 < 16 ? factor : 1.0;
+            picture[i] = static_cast<float>(mean + normal(generator));
+        }
+    return result;
+}
+
+RegionMeans regionMeansOf(const std::vector<Picture>& of) {
+    RegionMeans result;
+    for (const Picture& picture : of) result.means.push_back(regions.meansOf(picture));
+    return result;
+}
+
+HeldAgainst held(double factor, double noise = 0.05) {
+    return {regions, regionMeansOf(pictures(32, 1, noise, factor)),
+            regionMeansOf(pictures(16, 2, 0.02))};
+}
+
+Noise noise(double value, double relativeHalfWidth) {
+    return {value, {value / (1.0 + relativeHalfWidth), value * (1.0 + relativeHalfWidth)}};
+}
+
+}  // namespace
+
+TEST_CASE("Regress judge: of two means the test is Welch's, guarded as agreement's") {
+    const std::vector<double> a{1.0, 1.2, 0.9, 1.1, 1.05}, b{1.3, 1.2, 1.5, 1.25};
+    const MeanTerm terms[] = {{1.0, summarize(a), 0.01}, {-1.0, summarize(b), 0.02}};
+    const SumTest test = testSum(terms);
+    const WelchResult welch = welchTest(a, b);
+    CHECK(test.difference == doctest::Approx(welch.difference));
+    CHECK(test.p == doctest::Approx(welch.pValue));
+    CHECK(test.guardedP == doctest::Approx(guardedP(a, b, 0.01, 0.02)));
+    CHECK(test.guardedP > test.p);
+    CHECK(test.halfWidth ==
+          doctest::Approx(studentQuantile(0.99, welch.degreesOfFreedom) * welch.standardError));
+    // What does not vary at all.
+    const std::vector<double> one{1.0, 1.0}, two{2.0, 2.0};
+    const MeanTerm same[] = {{1.0, summarize(one)}, {-1.0, summarize(one)}};
+    const MeanTerm other[] = {{1.0, summarize(one)}, {-1.0, summarize(two)}};
+    CHECK(testSum(same).guardedP == 1.0);
+    CHECK(testSum(other).guardedP == 0.0);
+}
+
+TEST_CASE("Regress judge: a bias of one tile is found, and none where there is none") {
+    // Of a tile's mean the standard error is 0.05 / √(32 · 256) = 0.055 %, of the reference's
+    // 0.031 %: 1 % is sixteen of the two together.
+    const BiasJudgement right = judgeBias(held(1.0), 0.005, 7);
+    CHECK(right.verdict == BiasVerdict::unbiased);
+    CHECK(right.smallestP > right.level);
+    const BiasJudgement wrong = judgeBias(held(1.01), 0.5, 7);
+    CHECK(wrong.verdict == BiasVerdict::biased);
+    CHECK(wrong.relativeBias == doctest::Approx(0.005).epsilon(0.3));
+    CHECK(judgeBias(held(0.99), 0.5, 7).verdict == BiasVerdict::biased);
+}
+
+TEST_CASE("Regress judge: noise does not pass for the lack of a bias") {
+    const HeldAgainst noisy = held(1.0, 2.0);
+    CHECK(judgeBias(noisy, 0.005, 7).verdict == BiasVerdict::tooNoisy);
+    CHECK(judgeBias(noisy, 0.2, 7).verdict == BiasVerdict::unbiased);
+    CHECK(judgeBias(noisy, {}, 7).verdict == BiasVerdict::unbounded);
+    HeldAgainst bad = held(1.0);
+    bad.badSamples = 1;
+    CHECK(judgeBias(bad, 0.5, 7).verdict == BiasVerdict::biased);
+    // The bound that a new cell gets is one that it keeps.
+    const BiasJudgement bias = judgeBias(noisy, {}, 7);
+    const auto bound = boundFor(bias);
+    REQUIRE(bound);
+    CHECK(*bound > 2.5 * bias.halfWidth);
+    CHECK(judgeBias(noisy, bound, 7).verdict == BiasVerdict::unbiased);
+    CHECK(!boundFor({.relativeBias = 0.0, .halfWidth = 0.3}));
+    CHECK(boundFor({.relativeBias = 0.0, .halfWidth = 0.0005}) == 0.005);
+}
+
+TEST_CASE("Regress judge: two estimators are compared by what each is beside its reference") {
+    // One reference cancels, though it is wrong.
+    HeldAgainst a = held(1.0), b = held(1.0);
+    b.tested = regionMeansOf(pictures(32, 3, 0.05));
+    for (std::vector<double>& means : a.reference.means)
+        for (double& mean : means) mean *= 1.3;
+    b.reference = a.reference;
+    CHECK(judgeBetween(a, b, 7).verdict == BiasVerdict::unbounded);
+    b.tested = regionMeansOf(pictures(32, 3, 0.05, 1.01));
+    CHECK(judgeBetween(a, b, 7).verdict == BiasVerdict::biased);
+    // Two do not, and stand for the paths that only one of the two makes.
+    HeldAgainst half = held(0.5), whole = held(1.0);
+    half.reference = regionMeansOf(pictures(16, 4, 0.02, 0.5));
+    whole.tested = regionMeansOf(pictures(32, 3, 0.05));
+    CHECK(judgeBetween(half, whole, 7).verdict == BiasVerdict::unbounded);
+    half.reference = regionMeansOf(pictures(16, 4, 0.02, 0.505));
+    CHECK(judgeBetween(half, whole, 7).verdict == BiasVerdict::biased);
+}
+
+TEST_CASE("Regress judge: errors are those of the picture, without the reference's own") {
+    // Around brightness 1 relMSE is the variance over 1.01; of two checkpoints the second has half.
+    const double variance = 0.01;
+    SeedPictures rendered;
+    rendered.pictures = {pictures(32, 1, std::sqrt(variance)),
+                         pictures(32, 5, std::sqrt(variance / 2))};
+    ReferencePicture reference;
+    reference.pixels = pictures(1, 2, 0.1)[0];  // as noisy as what it judges
+    reference.noise = variance / 1.01;
+    const auto errors = errorsBySeed(rendered, reference);
+    REQUIRE(errors.size() == 32);
+    const Noise first = noiseOf({errors.begin(), errors.end()}, 2);
+    // The reference's noise is what it is expected to be but for √(2 / 1536) of it, 3.6 %; that of
+    // the pictures for 0.6 %. relMSE at its pixels is that at 1 but for the curvature: 3 · 0.01.
+    CHECK(first.value == doctest::Approx(2 * variance / 2 / 1.01).epsilon(0.35));
+    CHECK(first.interval.contains(first.value));
+    CHECK(errors[0].size() == 2);
+    CHECK(errors[0][0] > errors[0][1]);
+}
+
+TEST_CASE("Regress judge: noise is told from noise by both intervals") {
+    // Intervals of ± 5 % are about 1.9 % of standard error each, 2.7 % together; at a level of
+    // 0.01 / 100 Student's t of 31 is 4.4, so that 12 % is what can be told.
+    CHECK(judgeNoise(noise(1.0, 0.05), noise(1.1, 0.05), 100, 32) == NoiseVerdict::same);
+    CHECK(judgeNoise(noise(1.0, 0.05), noise(1.15, 0.05), 100, 32) == NoiseVerdict::worse);
+    CHECK(judgeNoise(noise(1.0, 0.05), noise(0.85, 0.05), 100, 32) == NoiseVerdict::better);
+    CHECK(judgeNoise(noise(1.0, 0.05), noise(1.1, 0.05), 1, 32) == NoiseVerdict::worse);
+    CHECK(judgeNoise(noise(1.0, 0.5), noise(1.15, 0.05), 100, 32) == NoiseVerdict::same);
+    // Errors below the reference's noise have no logarithm.
+    CHECK(judgeNoise(noise(1.0, 0.05), {-0.1, {-0.2, 0.1}}, 100, 32) == NoiseVerdict::same);
+    CHECK(judgeNoise(noise(1.0, 0.05), {5.0, {-0.2, 9.0}}, 100, 32) == NoiseVerdict::worse);
+}
+
+TEST_CASE("Regress judge: checkpoints are octaves, seven at most") {
+    CHECK(checkpointsUpTo(16) == std::vector<std::uint32_t>{1, 2, 4, 8, 16});
+    CHECK(checkpointsUpTo(256) == std::vector<std::uint32_t>{4, 8, 16, 32, 64, 128, 256});
+    CHECK(checkpointsUpTo(2) == std::vector<std::uint32_t>{1, 2});
+}

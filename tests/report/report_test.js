@@ -10,6 +10,7 @@ const { fixture, bareFixture, hostileFixture, hostileText } = require("./fixture
 before(start);
 after(stop);
 require("./flipper_cases.js");
+require("./numbers_cases.js");
 
 const data = fixture();
 const groups = [["cornell-box", "own"], ["glass-caustic", "own"], ["open-sky", "own"], ["still-life", "fisheye"]];

@@ -100,7 +100,7 @@ function lensAdvice(model, camera) {
     const comparisons = new Map();
     for (const lens of fits)
         for (const result of model.results) {
-            if (result.camera !== camera || result.variant !== lens.variant) continue;
+            if (!isThrough(result, lens)) continue;
             if (!result.equalTime || !isNumber(result.equalTime.relMse)) continue;
             const key = JSON.stringify([result.scene, result.estimator]);
             if (!comparisons.has(key)) comparisons.set(key, []);
@@ -180,11 +180,16 @@ function loadText({ load, cores }) {
     return formatChosen(load) + (isBusy ? ": the machine was busy, so trust the times less" : "");
 }
 
+/// Options break between words, not after their dashes.
+function commandText(command) {
+    return element("code", {}, String(command).split(/( )/).map((word) => (word.length < 24 ? element("span", { class: "word" }, word) : word)));
+}
+
 function provenance(model) {
     const { data } = model;
     const started = data.started ? String(data.started).replace("T", " ").replace("Z", " UTC") : notTold;
     const facts = [
-        ["Command", element("code", {}, data.command || notTold)],
+        ["Command", commandText(data.command || notTold)],
         ["Settings", settingsText(model.settings) || notTold],
         ["Machine", machineText(data.machine || {}) || notTold],
         ["Load at the start", loadText(data.machine || {})],

@@ -111,6 +111,14 @@ class ConvergenceFigure {
         clip.append("path").attr("class", "guide").attr("d", `M${x(low)},${y(at(low))}L${x(high)},${y(at(high))}`);
     }
 
+    /// The value at the cursor, else the slope.
+    legendText(result) {
+        const { measure, isOverTime } = this.view;
+        if (this.cursor === null) return measure.key === "relMse" ? slopeText(result) : "";
+        const point = curvePoints(result, measure, isOverTime).find((p) => p.step.samples === this.steps[this.cursor]);
+        return point ? stepText(point, measure, isOverTime) : "–";
+    }
+
     drawLegend() {
         const { measure } = this.view;
         const { reference } = this.group;
@@ -118,7 +126,7 @@ class ConvergenceFigure {
             element("button", { type: "button", class: "series", "aria-pressed": !this.hidden.has(result), title: "show or hide",
                                 onclick: (event) => this.toggle(result, event.currentTarget) },
                 seriesKey(styleOf(this.model, result)), element("span", {}, labelOf(result))),
-            measure.key === "relMse" ? element("span", { class: "muted" }, slopeText(result)) : ""));
+            element("span", { class: "muted" }, this.legendText(result))));
         if (measure.power !== null)
             items.push(element("li", {}, lineKey("guide"), element("span", { class: "muted" },
                 `slope ${measure.power === -1 ? "−1" : "−½"}, to compare`)));
@@ -157,6 +165,9 @@ class ConvergenceFigure {
 
     setCursor(index) {
         this.cursor = index;
+        this.legend.querySelectorAll("li > .muted").forEach((node, i) => {
+            if (i < this.group.results.length) node.textContent = this.legendText(this.group.results[i]);
+        });
         if (this.cursorLayer) this.cursorLayer.selectAll("*").remove();
         if (index === null) {
             this.readout.replaceChildren(element("span", { class: "muted" }, "Point at the plot, or use ← and →, to read values."));
@@ -171,8 +182,9 @@ class ConvergenceFigure {
         for (const { point } of at)
             if (point.x > 0 && point.y > 0)
                 this.cursorLayer.append("circle").attr("cx", x(point.x)).attr("cy", y(point.y)).attr("r", 8);
-        this.readout.replaceChildren(`${formatCount(samples)} ${samples === 1 ? "sample" : "samples"}: `,
-            ...at.map(({ s, point }, i) => `${i > 0 ? "; " : ""}${labelOf(s.result)} ${stepText(point, measure, isOverTime)}`));
+        // The values are for the ears: the legend shows them.
+        this.readout.replaceChildren(`${measure.name} at ${formatCount(samples)} ${samples === 1 ? "sample" : "samples"} a pixel`,
+            element("span", { class: "unseen" }, ": " + at.map(({ s, point }) => `${labelOf(s.result)} ${stepText(point, measure, isOverTime)}`).join("; ")));
     }
 }
 

@@ -34,19 +34,17 @@ function selectBox(label, choices, onChange) {
     return element("span", { class: "control" }, element("label", { for: id }, label), select);
 }
 
-/// An exposure in stops.
+/// An exposure in stops. `show` moves the slider without a word to `onInput`.
 function exposureSlider(label, onInput) {
     const id = `range-${++controlCount}`;
     const shown = element("output", { for: id }, "0");
-    const input = element("input", {
-        id, type: "range", min: -8, max: 8, step: 0.25, value: 0,
-        oninput: () => {
-            const stops = Number(input.value);
-            shown.textContent = (stops > 0 ? "+" : stops < 0 ? "−" : "") + Math.abs(stops);
-            onInput(stops);
-        },
-    });
-    return element("span", { class: "control" }, element("label", { for: id }, label), input, shown);
+    const input = element("input", { id, type: "range", min: -8, max: 8, step: 0.25, value: 0 });
+    const show = (stops) => {
+        input.value = stops;
+        shown.textContent = (stops > 0 ? "+" : stops < 0 ? "−" : "") + Math.abs(stops);
+    };
+    input.addEventListener("input", () => { show(Number(input.value)); onInput(Number(input.value)); });
+    return { node: element("span", { class: "control" }, element("label", { for: id }, label), input, shown), show };
 }
 
 /// Calls `draw(container, width in CSS pixels)` now and whenever the width changes.

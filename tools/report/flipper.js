@@ -4,7 +4,8 @@
 class Viewport {
     constructor(onChange) {
         this.onChange = onChange;
-        this.state = { shown: 0, other: 0, isWiping: false, divider: 0.5, view: "picture", stops: 0 };
+        this.state = { shown: 0, other: 0, isWiping: false, divider: 0.5, view: "picture" };
+        this.stopsOf = { picture: 0, squared: 0, signed: 0 };
         this.set = null;
         this.pixel = null;
         this.canvas = element("canvas", { class: "picture", "aria-hidden": "true" });
@@ -27,6 +28,7 @@ class Viewport {
         this.state.shown = Math.min(shown, set.images.length - 1);
         this.state.other = set.images.length > 1 && this.state.shown === 0 ? 1 : 0;
         if (!set.hasErrors) this.state.view = "picture";
+        this.stopsOf.signed = set.signedStops || 0;
         this.pixel = null;
         if (!hadSize) this.room = 0;
         this.resize();
@@ -35,6 +37,9 @@ class Viewport {
 
     change(values) {
         Object.assign(this.state, values);
+        // A picture wiped against itself shows nothing.
+        const { isWiping, shown, other } = this.state;
+        if (values.isWiping && isWiping && other === shown) this.state.other = shown === 0 ? 1 : 0;
         this.changed();
     }
 
@@ -44,6 +49,16 @@ class Viewport {
         this.divider.setAttribute("aria-valuenow", Math.round(100 * this.state.divider));
         this.draw();
         this.onChange(this);
+    }
+
+    /// Each view has its own exposure: an error's is its gain.
+    stops() {
+        return this.stopsOf[this.state.view];
+    }
+
+    expose(stops) {
+        this.stopsOf[this.state.view] = stops;
+        this.changed();
     }
 
     resize() {
@@ -101,7 +116,8 @@ class Viewport {
 
     canvasOf(index) {
         const image = this.set.images[index];
-        const { view, stops } = this.state;
+        const { view } = this.state;
+        const stops = this.stops();
         const key = `${index} ${view} ${stops}`;
         if (!this.painted.has(key)) {
             if (this.painted.size > 40) this.painted.clear();

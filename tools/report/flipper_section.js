@@ -22,7 +22,14 @@ function pictureSet(title, reference, images, isCompared) {
     const { width, height } = images[0].picture;
     const isAlike = ({ picture }) => picture.width === width && picture.height === height;
     const hasErrors = isCompared && reference !== null && isAlike({ picture: reference });
-    return { title, width, height, reference, images: images.filter(isAlike), hasErrors };
+    const set = { title, width, height, reference, images: images.filter(isAlike), hasErrors };
+    return { ...set, signedStops: hasErrors ? signedStopsOf(set) : 0 };
+}
+
+/// A gain for signed errors that shows four times the root mean square of the worst picture in full colour.
+function signedStopsOf({ images, reference }) {
+    const worst = d3.max(images, ({ picture }) => meanSquaredError(picture, reference));
+    return worst > 0 ? Math.min(8, Math.max(-8, Math.floor(-Math.log2(4 * Math.sqrt(worst))))) : 0;
 }
 
 function referenceNote(reference) {
@@ -36,7 +43,7 @@ function pictureNote(result) {
 }
 
 function rgbText(values, pixel) {
-    return [0, 1, 2].map((c) => formatNumber(values[3 * pixel + c])).join("  ");
+    return [0, 1, 2].map((c) => formatNumber(values[3 * pixel + c])).join(", ");
 }
 
 class Flipper {
@@ -50,21 +57,21 @@ class Flipper {
         this.views = radioGroup("Show", [["picture", "picture"], ["squared", "squared error"], ["signed", "signed error"]], "picture",
             (view) => this.view.change({ view }));
         this.setBox = selectBox("Scene", sets.map((set) => [set, set.title]), (set) => this.view.show(set));
-        this.exposure = exposureSlider("Exposure", (stops) => this.view.change({ stops }));
+        this.exposure = exposureSlider("Exposure", (stops) => this.view.expose(stops));
         this.wipe = element("input", { type: "checkbox", onchange: (event) => this.view.change({ isWiping: event.target.checked }) });
         this.against = element("span", { class: "control" });
         const button = (text, label, onclick) => element("button", { type: "button", "aria-label": label, onclick }, text);
         this.node = element("div", { class: "flipper", onkeydown: (event) => this.onKey(event) },
             element("div", { class: "controls" }, this.setBox, this.views),
             this.names, this.view.frame, this.colourBar, this.readout, this.note,
-            element("div", { class: "controls" }, this.exposure,
+            element("div", { class: "controls" }, this.exposure.node,
                 element("span", { class: "control" }, button("−", "Zoom out", () => this.view.zoomAt(1 / 1.5)),
                     button("fit", "Fit the whole picture", () => this.view.fit()), button("+", "Zoom in", () => this.view.zoomAt(1.5)),
                     this.zoomText = element("output", { "aria-label": "Zoom" })),
                 element("label", { class: "control" }, this.wipe, element("span", {}, "wipe")), this.against),
             element("details", { class: "help" }, element("summary", {}, "Keys and gestures"), element("p", { id: "viewer-help" },
                 "1 to 9, arrow keys or a click flip through the pictures; + and −, wheel or pinch zoom, 0 fits; drag or Shift + arrow keys pan; ",
-                "i j k l move the pixel that is read; e changes between picture and errors; w wipes, [ and ] move the divider. ",
+                "i j k l move the pixel that is read; e changes between picture and errors; w wipes, [ and ] move the divider. In the views of errors the exposure is their gain. ",
                 "Errors are against the reference: squared is the mean over channels of (a − r)² / (r² + 0.01), signed of (a − r) / √(r² + 0.01).")));
     }
 
@@ -103,6 +110,7 @@ class Flipper {
             + (state.isWiping ? `; right of the divider: ${set.images[state.other].label}` : "");
         this.zoomText.textContent = this.view.zoom ? `${formatNumber(this.view.zoom, 2)} ×` : "";
         this.readout.textContent = this.pixelText();
+        this.exposure.show(this.view.stops());
         this.drawColourBar();
     }
 
@@ -129,7 +137,8 @@ class Flipper {
     }
 
     drawColourBar() {
-        const { view, stops } = this.view.state;
+        const { view } = this.view.state;
+        const stops = this.view.stops();
         const key = `${view} ${stops}`;
         if (this.drawnBar === key) return;
         this.drawnBar = key;
@@ -140,7 +149,7 @@ class Flipper {
         const labels = view === "squared"
             ? d3.range(squaredDecades[0], squaredDecades[1] + 1).map((decade) => formatNumber(10 ** decade / gain, 1))
             : [`−${formatNumber(1 / gain, 2)} too dark`, "0", `+${formatNumber(1 / gain, 2)} too bright`];
-        const stopsOf = colours.filter((_, i) => i % 15 === 0).map((colour) => `rgb(${colour.join(",")})`);
+        const stopsOf = colours.filter((_, i) => i % 2 === 0).map((colour) => `rgb(${colour.join(",")})`);
         this.colourBar.replaceChildren(
             element("div", { class: "ramp", style: `background:linear-gradient(to right,${stopsOf.join(",")})`, "aria-hidden": "true" }),
             element("div", { class: "labels" }, labels.map((text) => element("span", {}, text))));

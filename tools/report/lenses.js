@@ -2,8 +2,7 @@
 
 /// Results through a lens' variant, in one scene or all (null).
 function resultsThrough(model, lens, scene) {
-    return model.results.filter((result) => result.camera === lens.camera && result.variant === lens.variant
-        && (scene === null || result.scene === scene));
+    return model.results.filter((result) => isThrough(result, lens) && (scene === null || result.scene === scene));
 }
 
 /// {title, unit, series: [{label, style, points}], levels: [{label, value}]}
@@ -77,9 +76,8 @@ function lensFigure(panel) {
         named.length === 0 ? null : element("ul", { class: "legend" }, named.map((s) => element("li", {}, seriesKey(s.style), element("span", {}, s.label)))));
 }
 
-function lensTable(model, camera, scene) {
-    const entries = model.lenses.filter((lens) => lens.camera === camera);
-    const number = (key, digits = 3) => ({ text: (lens) => (isNumber(lens[key]) ? formatNumber(lens[key], digits) : "–"), sort: (lens) => lens[key] });
+function lensTable(model, caption, entries, scene) {
+    const number = (key, digits = 3) => ({ key, text: (lens) => (isNumber(lens[key]) ? formatNumber(lens[key], digits) : "–"), sort: (lens) => lens[key] });
     const estimators = [...new Set(entries.flatMap((lens) => resultsThrough(model, lens, scene)).map((result) => result.estimator))];
     const error = (estimator, key) => (lens) => {
         const found = resultsThrough(model, lens, scene).find((result) => result.estimator === estimator);
@@ -87,25 +85,28 @@ function lensTable(model, camera, scene) {
     };
     const pictureColumn = (estimator, key, name) => ({ head: `${estimator} relMSE, ${name}`,
         text: (lens) => (error(estimator, key)(lens) === null ? "–" : formatNumber(error(estimator, key)(lens))), sort: error(estimator, key) });
-    return dataTable(`${camera}: terms, fit, time, picture`, [
-        { head: "lens", isText: true, text: (lens) => lens.variant || lens.description, sort: (lens) => lens.variant },
+    const isOneCamera = new Set(entries.map((lens) => lens.camera)).size === 1;
+    return dataTable(caption, [
+        isOneCamera ? { head: "lens", isText: true, text: (lens) => lens.variant || lens.description, sort: (lens) => lens.variant }
+            : { head: "camera", isText: true, text: (lens) => [lens.camera, lens.variant].filter(Boolean).join(", "), sort: (lens) => lens.camera },
         { head: "model", isText: true, text: (lens) => lens.description || "–", sort: (lens) => lens.description },
-        { head: "terms", text: (lens) => (isNumber(lens.terms) ? formatCount(lens.terms) : "–"), sort: (lens) => lens.terms },
+        { head: "terms", key: "terms", text: (lens) => (isNumber(lens.terms) ? formatCount(lens.terms) : "–"), sort: (lens) => lens.terms },
         { head: "fit error / mrad", ...number("fitErrorMrad", 2) },
         { head: "fit error / µm", ...number("fitErrorMicrons", 2) },
         { head: "ray / ns", ...number("rayNs") },
         { head: "connection / ns", ...number("connectNs") },
         ...estimators.flatMap((estimator) => [pictureColumn(estimator, "equalTime", "equal time"), pictureColumn(estimator, "equalSamples", "equal samples")]),
-    ], entries);
+    ].filter(({ key }) => !key || entries.some((lens) => isNumber(lens[key]))), entries);
 }
 
 function drawLens(model, camera) {
-    const scenes = model.scenes.filter((scene) => model.results.some((result) => result.scene === scene && result.camera === camera));
+    const entries = model.lenses.filter((lens) => lens.camera === camera);
+    const scenes = model.scenes.filter((scene) => entries.some((lens) => resultsThrough(model, lens, scene).length > 0));
     const body = element("div");
     const draw = (scene) => {
         const panels = lensPanels(model, camera, scene);
         const hasFits = panels.some((panel) => new Set(panel.series.flatMap((s) => s.points.map((point) => point.x))).size > 1);
-        body.replaceChildren(...(hasFits ? [element("div", { class: "lens-panels" }, panels.map(lensFigure))] : []), lensTable(model, camera, scene));
+        body.replaceChildren(...(hasFits ? [element("div", { class: "lens-panels" }, panels.map(lensFigure))] : []), lensTable(model, `${camera}: terms, fit, time, picture`, entries, scene));
     };
     draw(scenes.length > 0 ? scenes[0] : null);
     return element("div", { class: "lens-camera" }, element("h3", {}, cameraPhrase(camera)),
@@ -117,8 +118,17 @@ function drawLens(model, camera) {
 function drawLenses(model, section) {
     const cameras = [...new Set(model.lenses.map((lens) => lens.camera))];
     if (cameras.length === 0) return false;
-    section.append(element("p", {}, "More terms fit better and cost more: what that is worth shows in the picture after equal time, ",
-        "whose error has the noise and the misfit of the lens in it. Dashed lines are lenses without terms."),
-        ...cameras.map((camera) => drawLens(model, camera)));
+    // A camera with one lens, and that without terms, offers nothing to trade.
+    const isTrade = (camera) => {
+        const entries = model.lenses.filter((lens) => lens.camera === camera);
+        return entries.length > 1 || isNumber(entries[0].terms);
+    };
+    const traded = cameras.filter(isTrade);
+    const others = model.lenses.filter((lens) => !isTrade(lens.camera));
+    if (traded.length > 0)
+        section.append(element("p", {}, "More terms fit better and cost more: what that is worth shows in the picture after equal time, ",
+            "whose error has the noise and the misfit of the lens in it. Dashed lines are lenses without terms."),
+            ...traded.map((camera) => drawLens(model, camera)));
+    if (others.length > 0) section.append(lensTable({ ...model, results: [] }, traded.length > 0 ? "Other cameras" : "What rays and connections cost", others, null));
     return true;
 }

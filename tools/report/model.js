@@ -57,6 +57,12 @@ function timeRatio(result) {
              high: inverse(result.efficiencyRatioLow) };
 }
 
+/// Whether a picture was taken through a lens. A scene's own camera is "own" in results and may be
+/// "scene, own" among the lenses, which know no scenes.
+function isThrough(result, lens) {
+    return result.variant === lens.variant && (result.camera === lens.camera || `${result.scene}, ${result.camera}` === lens.camera);
+}
+
 /// Whether the intervals leave open which of two is the more efficient.
 function isTied(group, a, b) {
     const first = group.results[0];

@@ -14,8 +14,7 @@ function superscript(exponent) {
 /// Fixed decimals (negative: rounded to tens, hundreds …), a true minus, thousands set apart.
 function fixed(value, decimals) {
     const step = 10 ** Math.max(0, -decimals);
-    const text = (Math.round(value / step) * step === 0 && decimals <= 0 ? 0 : step > 1 ? Math.round(value / step) * step : value)
-        .toFixed(Math.max(0, decimals));
+    const text = (decimals > 0 ? value : Math.round(value / step) * step).toFixed(Math.max(0, decimals));
     const [whole, fraction] = text.replace("-", "").split(".");
     const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, thinSpace) : whole;
     return (text.startsWith("-") && Number(text) !== 0 ? "−" : "") + grouped + (fraction ? "." + fraction : "");
@@ -32,6 +31,7 @@ function isUnwieldy(exponent) {
 
 function formatNumber(value, digits = 3) {
     if (!isNumber(value)) return notTold;
+    if (value === 0) return "0";
     const exponent = exponentOf(value);
     if (isUnwieldy(exponent))
         return fixed(value / 10 ** exponent, digits - 1) + " × 10" + superscript(exponent);
@@ -48,22 +48,29 @@ function formatCount(value) {
     return isNumber(value) ? fixed(value, 0) : notTold;
 }
 
-/// Decimals that show an interval's half width to one or two digits, the value to four at most.
+/// Decimals that show an interval's half width to one or two digits, the value to two at least and four at most.
 function decimalsFor(halfWidth, exponent) {
     const order = Math.floor(Math.log10(halfWidth));
     const decimals = -order + (halfWidth / 10 ** order < 2 ? 1 : 0);
-    return Math.min(decimals, 3 - exponent);
+    return Math.max(1 - exponent, Math.min(decimals, 3 - exponent));
+}
+
+/// Ends so far apart, by their ratio, that no number of decimals suits both.
+function isWide(low, high) {
+    const [less, more] = [Math.abs(low), Math.abs(high)].sort((a, b) => a - b);
+    return low * high > 0 && more > 2 * less;
 }
 
 /// {value, range}: "0.31" and "0.28–0.34"; no range where there is no interval.
 function intervalParts(value, low, high) {
     if (!isNumber(value)) return { value: notTold, range: "" };
     if (!isNumber(low) || !isNumber(high) || high <= low) return { value: formatNumber(value), range: "" };
-    const exponent = exponentOf(Math.max(Math.abs(value), Math.abs(low), Math.abs(high)));
+    const dash = low < 0 ? " to " : "–";
+    if (isWide(low, high)) return { value: formatNumber(value, 2), range: formatNumber(low, 2) + dash + formatNumber(high, 2) };
+    const exponent = exponentOf(value === 0 ? (high - low) / 2 : value);
     const scale = isUnwieldy(exponent) ? 10 ** exponent : 1;
     const decimals = decimalsFor((high - low) / 2 / scale, scale === 1 ? exponent : 0);
     const suffix = scale === 1 ? "" : " × 10" + superscript(exponent);
-    const dash = low < 0 ? " to " : "–";
     return {
         value: fixed(value / scale, decimals) + suffix,
         range: fixed(low / scale, decimals) + dash + fixed(high / scale, decimals) + suffix,

@@ -78,10 +78,10 @@ function meanSquaredError(picture, reference) {
     return sum / pixels;
 }
 
-/// 256 colours between the given ones, as bytes.
+/// 255 colours between the given ones, as bytes: an odd number, so that the middle one is among them.
 function colourTable(colours) {
     const scale = d3.scaleLinear().domain(colours.map((_, i) => i / (colours.length - 1))).range(colours);
-    return Array.from({ length: 256 }, (_, i) => scale(i / 255).match(/\d+/g).slice(0, 3).map(Number));
+    return Array.from({ length: 255 }, (_, i) => scale(i / 254).match(/\d+/g).slice(0, 3).map(Number));
 }
 
 // Viridis: even steps of lightness, so that it reads without colours too.
@@ -92,11 +92,11 @@ const squaredDecades = [-4, 0];  // of the legend at no exposure
 
 function squaredColour(error, gain) {
     const place = (Math.log10(error * gain) - squaredDecades[0]) / (squaredDecades[1] - squaredDecades[0]);
-    return squaredColours[Number.isNaN(place) ? 255 : Math.round(255 * Math.min(1, Math.max(0, place)))];
+    return squaredColours[Number.isNaN(place) ? 254 : Math.round(254 * Math.min(1, Math.max(0, place)))];
 }
 
 function signedColour(error, gain) {
-    return signedColours[Number.isNaN(error) ? 255 : Math.round(255 * Math.min(1, Math.max(0, 0.5 + 0.5 * error * gain)))];
+    return signedColours[Number.isNaN(error) ? 254 : Math.round(254 * Math.min(1, Math.max(0, 0.5 + 0.5 * error * gain)))];
 }
 
 /// A canvas of the picture's own size. `view`: "picture", "squared" or "signed".

@@ -6,6 +6,7 @@ class Pyramid {
         this.group = groups[0];
         this.isWeighted = true;
         this.stops = 0;
+        this.isLifted = false;
         this.grid = element("div", { class: "wide pyramid-frame", tabindex: 0, role: "region", "aria-label": "Technique pyramid" });
     }
 
@@ -21,6 +22,8 @@ class Pyramid {
             columns.map((s) => element("th", { scope: "col" }, `s = ${s}`)));
         const rows = lengths.map((length) => element("tr", {}, element("th", { scope: "row" }, String(length)),
             columns.map((s) => element("td", {}, this.cell(images.find((image) => image.s === s && s + image.t - 1 === length))))));
+        // As wide as fits, within reason; below that the table scrolls.
+        this.grid.style.setProperty("--thumbnail", `calc((100cqw - 58px) / ${columns.length} - 7px)`);
         this.grid.replaceChildren(element("table", { class: "pyramid" }, element("thead", {}, head), element("tbody", {}, rows)));
     }
 
@@ -29,7 +32,7 @@ class Pyramid {
         const name = `s = ${image.s}, t = ${image.t}`;
         const picture = pictureOf(this.model, this.indexOf(image));
         if (!picture) return element("span", { class: "muted small" }, `t = ${image.t}`, element("br"), notTold);
-        const canvas = paintedCanvas(picture, null, "picture", this.stops);
+        const canvas = paintedCanvas(picture, null, "picture", this.stops + (this.isLifted ? image.s + image.t - 2 : 0));
         canvas.setAttribute("aria-hidden", "true");
         return element("button", { type: "button", class: "thumbnail", "aria-label": `Enlarge ${name}, ${this.isWeighted ? "weighted" : "unweighted"}`,
             onclick: () => this.enlarge(image) }, canvas, element("span", {}, `t = ${image.t}`));
@@ -64,7 +67,9 @@ function drawTechniques(model, section, flipper) {
             groups.length < 2 ? null : selectBox("Scene", groups.map((group) => [group, group.title]), (group) => { pyramid.group = group; pyramid.draw(); }),
             radioGroup("Pictures", [["weighted", "weighted"], ["unweighted", "unweighted"]], "weighted",
                 (value) => { pyramid.isWeighted = value === "weighted"; pyramid.draw(); }),
-            exposureSlider("Exposure", (stops) => { pyramid.stops = stops; pyramid.draw(); })),
+            exposureSlider("Exposure", (stops) => { pyramid.stops = stops; pyramid.draw(); }).node,
+            element("label", { class: "control" }, element("input", { type: "checkbox", onchange: (event) => { pyramid.isLifted = event.target.checked; pyramid.draw(); } }),
+                element("span", {}, "one stop more for each further edge"))),
         groups.length === 1 ? element("p", { class: "small muted" }, groups[0].title) : "",
         pyramid.grid);
     pyramid.draw();

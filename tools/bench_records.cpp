@@ -61,6 +61,16 @@ Json jsonOf(const BenchLens& l) {
                          {"connectNs", l.connectNs}});
 }
 
+Json jsonOf(const BenchFitError& e) {
+    return Json::object({{"kind", "fitError"},
+                         {"scene", e.scene},
+                         {"camera", e.camera},
+                         {"variant", e.variant},
+                         {"relMse", e.relMse},
+                         {"low", e.low},
+                         {"high", e.high}});
+}
+
 Json jsonOf(const BenchCheckpoint& c) {
     return Json::object({{"samples", c.samples},
                          {"seconds", c.seconds},
@@ -154,6 +164,11 @@ BenchLens lensFrom(const Parsed& j) {
             number(j, "connectNs")};
 }
 
+BenchFitError fitErrorFrom(const Parsed& j) {
+    return {text(j, "scene"),    text(j, "camera"), text(j, "variant"),
+            number(j, "relMse"), number(j, "low"),  number(j, "high")};
+}
+
 BenchRun runFrom(const Parsed& j) {
     BenchRun run{{text(j, "scene"), text(j, "camera"), text(j, "variant"), text(j, "estimator")},
                  j.at("seed").get<int>(),
@@ -178,6 +193,8 @@ void take(const Parsed& json, BenchRecords& records) {
         records.references.push_back(referenceFrom(json));
     else if (kind == "lens")
         records.lenses.push_back(lensFrom(json));
+    else if (kind == "fitError")
+        records.fitErrors.push_back(fitErrorFrom(json));
     else if (kind == "run")
         records.runs.push_back(runFrom(json));
     else
@@ -215,6 +232,9 @@ void appendRecord(const std::filesystem::path& file, const BenchReference& refer
 }
 void appendRecord(const std::filesystem::path& file, const BenchLens& lens) {
     append(file, jsonOf(lens));
+}
+void appendRecord(const std::filesystem::path& file, const BenchFitError& error) {
+    append(file, jsonOf(error));
 }
 void appendRecord(const std::filesystem::path& file, const BenchRun& run) {
     append(file, jsonOf(run));

@@ -51,6 +51,12 @@ struct BenchLens {
     double rayNs = 0.0, connectNs = 0.0;
 };
 
+/// What the fit of a camera's lens does to a picture by itself (bench_fit_error.h).
+struct BenchFitError {
+    std::string scene, camera, variant;
+    double relMse = 0.0, low = 0.0, high = 0.0;
+};
+
 /// Where and by what a suite was run.
 struct BenchHeader {
     std::string title, key, command, version, started;
@@ -63,6 +69,7 @@ struct BenchRecords {
     std::optional<BenchHeader> header;
     std::vector<BenchReference> references;
     std::vector<BenchLens> lenses;
+    std::vector<BenchFitError> fitErrors;
     std::vector<BenchRun> runs;
 };
 
@@ -75,6 +82,7 @@ BenchRecords readBenchRecords(const std::filesystem::path& file);
 void appendRecord(const std::filesystem::path& file, const BenchHeader& header);
 void appendRecord(const std::filesystem::path& file, const BenchReference& reference);
 void appendRecord(const std::filesystem::path& file, const BenchLens& lens);
+void appendRecord(const std::filesystem::path& file, const BenchFitError& error);
 void appendRecord(const std::filesystem::path& file, const BenchRun& run);
 
 /// A row for each checkpoint, with the names of the columns first.

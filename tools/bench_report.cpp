@@ -196,6 +196,15 @@ Json jsonOf(const BenchLens& l) {
                          {"connectNs", l.connectNs}});
 }
 
+Json jsonOf(const BenchFitError& e) {
+    return Json::object({{"scene", e.scene},
+                         {"camera", e.camera},
+                         {"variant", e.variant},
+                         {"relMse", e.relMse},
+                         {"relMseLow", e.low},
+                         {"relMseHigh", e.high}});
+}
+
 }  // namespace
 
 Json benchReportData(const BenchSuite& suite, const BenchRecords& records,
@@ -204,11 +213,12 @@ Json benchReportData(const BenchSuite& suite, const BenchRecords& records,
     Pictures pictures;
     const BenchHeader header = records.header.value_or(BenchHeader{});
     Json references = Json::array(), lenses = Json::array(), measured = Json::array(),
-         techniques = Json::array();
+         techniques = Json::array(), fitErrors = Json::array();
     for (const BenchReference& r : records.references)
         references.add(
             jsonOf(r, results, pictures.add(imageAt(folder.referencePicture(r.scene, r.camera)))));
     for (const BenchLens& lens : records.lenses) lenses.add(jsonOf(lens));
+    for (const BenchFitError& error : records.fitErrors) fitErrors.add(jsonOf(error));
     for (const BenchResult& result : results) {
         Json json = jsonOf(result);
         json.add("picture", pictures.add(meanPicture(folder, result.configuration, suite.seeds)));
@@ -240,6 +250,7 @@ Json benchReportData(const BenchSuite& suite, const BenchRecords& records,
                          {"isComplete", isComplete},
                          {"references", references},
                          {"lenses", lenses},
+                         {"fitErrors", fitErrors},
                          {"results", measured},
                          {"techniques", techniques},
                          {"pictures", pictures.all()}});

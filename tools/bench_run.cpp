@@ -9,6 +9,7 @@
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
 #include "statistics/flip.h"
+#include "tools/bench_fit_error.h"
 #include "tools/bench_lens.h"
 #include "tools/bench_reference.h"
 #include "tools/machine.h"
@@ -19,18 +20,6 @@
 namespace etendue {
 
 namespace {
-
-/// A name that any file system takes, of several names.
-std::string fileName(const std::vector<std::string>& parts) {
-    std::string name;
-    for (const std::string& part : parts) {
-        if (part.empty()) continue;
-        if (!name.empty()) name += '.';
-        for (const char c : part)
-            name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '+' ? c : '_';
-    }
-    return name;
-}
 
 FrameWindow windowOf(const FilmSettings& film) {
     return {film.width, film.height, 0, 0, film.width, film.height};
@@ -153,7 +142,14 @@ private:
             variants.push_back(load(view, variant.overrides));
             recordLens(view, variant, variants.back());
         }
-        const std::optional<Picture> reference = referenceOf(view);
+        LoadedScene truth = load(view, {});
+        const bool isFitted = truth.fit.has_value();
+        if (isFitted) truth = load(view, {"camera.representation=traced"});
+        for (std::size_t v = 0; suite_.wantsFitErrors && isFitted && v < variants.size(); ++v)
+            if (variants[v].fit && !recordFitError(view, view.variants[v], truth, variants[v]))
+                return false;
+        if (view.estimators.empty()) return true;
+        const std::optional<Picture> reference = referenceOf(view, truth);
         if (!reference) return false;
         bool goesOn = true;
         forEachRun(view, [&](const BenchConfiguration& configuration, std::size_t v, int seed) {
@@ -190,11 +186,30 @@ private:
         return view.camera.name == "own" ? view.scene.name + ", own" : view.camera.name;
     }
 
+    bool recordFitError(const BenchView& view, const BenchVariant& variant,
+                        const LoadedScene& traced, const LoadedScene& fitted) {
+        const auto isSame = [&](const BenchFitError& e) {
+            return e.scene == view.scene.name && e.camera == view.camera.name &&
+                   e.variant == variant.name;
+        };
+        if (std::any_of(records_.fitErrors.begin(), records_.fitErrors.end(), isSame)) return true;
+        FitErrorSettings settings;
+        settings.threads = settings_.threads;
+        const auto error = fitImageError(traced, fitted, settings, [&] {
+            bar_.update(fmt::format("{}, {}: error of the fit", titleOf(view), variant.name), 0.0);
+            return !isStopRequested();
+        });
+        if (!error) return false;
+        const BenchFitError record{view.scene.name, view.camera.name,    variant.name,
+                                   error->relMse,   error->interval.low, error->interval.high};
+        appendRecord(folder_.records(), record);
+        records_.fitErrors.push_back(record);
+        return true;
+    }
+
     /// The truth of a lens of glass is its exact trace.
-    std::optional<Picture> referenceOf(const BenchView& view) {
+    std::optional<Picture> referenceOf(const BenchView& view, const LoadedScene& truth) {
         const std::string title = titleOf(view) + ": reference";
-        LoadedScene truth = load(view, {});
-        if (truth.fit) truth = load(view, {"camera.representation=traced"});
         const ReferenceSettings settings{suite_.referenceEstimator, suite_.referenceSeconds,
                                          settings_.threads};
         const std::optional<Reference> reference =
@@ -298,21 +313,6 @@ private:
 };
 
 }  // namespace
-
-std::filesystem::path BenchFolder::picture(const BenchConfiguration& c, int seed) const {
-    return path / "pictures" /
-           (fileName({c.scene, c.camera, c.variant, c.estimator, std::to_string(seed)}) + ".exr");
-}
-
-std::filesystem::path BenchFolder::referencePicture(const std::string& scene,
-                                                    const std::string& camera) const {
-    return path / "pictures" / (fileName({scene, camera, "reference"}) + ".exr");
-}
-
-std::filesystem::path BenchFolder::techniques(const std::string& scene,
-                                              const std::string& camera) const {
-    return path / "pictures" / (fileName({scene, camera, "techniques"}) + ".exr");
-}
 
 bool runBench(const BenchSuite& suite, const BenchRunSettings& settings,
               const BenchFolder& folder) {

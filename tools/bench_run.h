@@ -1,25 +1,12 @@
 // BenchRunner: does what a suite asks for, and keeps what it finds in a folder.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
-#include "tools/bench_records.h"
+#include "tools/bench_folder.h"
 #include "tools/bench_suite.h"
 
 namespace etendue {
-
-/// The files of a suite's folder.
-struct BenchFolder {
-    std::filesystem::path path;
-
-    std::filesystem::path records() const { return path / "results.jsonl"; }
-    /// Mean over the seeds of the pictures after the time of a run; see also referencePicture.
-    std::filesystem::path picture(const BenchConfiguration& configuration, int seed) const;
-    std::filesystem::path referencePicture(const std::string& scene,
-                                           const std::string& camera) const;
-    std::filesystem::path techniques(const std::string& scene, const std::string& camera) const;
-};
 
 struct BenchRunSettings {
     std::string command;  // as it was typed

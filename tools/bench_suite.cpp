@@ -73,9 +73,9 @@ std::size_t BenchSuite::runCount() const {
 }
 
 std::string BenchSuite::key() const {
-    std::string text =
-        fmt::format("{} {} {} {} {} {} {} {} {}\n", width, height, seeds, seconds, mostSamples,
-                    targetRelMse, referenceSeconds, referenceEstimator, wantsTechniques);
+    std::string text = fmt::format("{} {} {} {} {} {} {} {} {} {}\n", width, height, seeds, seconds,
+                                   mostSamples, targetRelMse, referenceSeconds, referenceEstimator,
+                                   wantsTechniques, wantsFitErrors);
     for (const BenchView& view : views) {
         text += titleOf(view);
         for (const std::string& assignment : view.overrides) text += " -s " + assignment;
@@ -105,6 +105,7 @@ BenchSuite loadBenchSuite(const std::filesystem::path& file) {
     suite.referenceEstimator =
         table.choice("reference_estimator", estimatorKinds(), suite.referenceEstimator);
     suite.wantsTechniques = table.boolean("techniques", suite.wantsTechniques);
+    suite.wantsFitErrors = table.boolean("fit_errors", suite.wantsFitErrors);
     const std::filesystem::path above = std::filesystem::absolute(file).parent_path().parent_path();
     const std::filesystem::path folder =
         table.has("folder") ? std::filesystem::absolute(file).parent_path() / table.text("folder")

@@ -35,6 +35,7 @@ struct BenchSuite {
     double referenceSeconds = 60.0;
     std::string referenceEstimator = "bdpt";
     bool wantsTechniques = true;  // pictures of bdpt's techniques
+    bool wantsFitErrors = false;  // what the fits of lenses do to the pictures by themselves
     std::vector<BenchView> views;
 
     /// Of everything that its results depend on, but for the contents of scenes.

@@ -88,6 +88,11 @@ TEST_CASE(
         3, [](auto) { return std::nan(""); }, 0.9, 10, 1);
     CHECK(std::isnan(interval.low));
     CHECK(std::isnan(interval.high));
+    // Nor does what is one for most draws.
+    const auto sometimes = [](std::span<const std::size_t> chosen) {
+        return chosen[0] == 2 ? std::nan("") : 1.0;
+    };
+    CHECK(std::isnan(bootstrapInterval(30, sometimes, 0.9, 100, 1).low));
     const auto zero = [](auto) { return 0.0; };
     CHECK_THROWS_AS(bootstrapInterval(0, zero, 0.9, 10, 1), std::invalid_argument);
     CHECK_THROWS_AS(bootstrapInterval(3, zero, 0.9, 0, 1), std::invalid_argument);

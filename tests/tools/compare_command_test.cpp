@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <variant>
 
 #include "renderer/image_io.h"
@@ -71,6 +72,16 @@ std::string faultOf(const CompareCommand& command, ExitCode code = ExitCode::bad
         return text;
     }
     return "";
+}
+
+/// One grey pixel of 16 bits, which the image reader makes a float.
+std::string deepPng() {
+    static constexpr char bytes[] =
+        "\211\120\116\107\015\012\032\012\000\000\000\015\111\110\104\122\000\000\000\001"
+        "\000\000\000\001\020\000\000\000\000\152\356\107\026\000\000\000\013\111\104\101"
+        "\124\170\234\143\020\062\001\000\000\133\000\107\226\373\033\145\000\000\000\000"
+        "\111\105\116\104\256\102\140\202";
+    return {bytes, sizeof bytes - 1};
 }
 
 /// The number after `key` in JSON, "null" being NaN.
@@ -156,16 +167,22 @@ TEST_CASE("Compare: what cannot be compared gets one message") {
     std::vector<float> spoiled = ramp(1.0F);
     spoiled[3 * (2 * width + 5)] = std::numeric_limits<float>::quiet_NaN();
     pictures.write("nan.exr", spoiled);
-    writeExr(pictures.folder / "small.exr", {2, 1, 0, 0, 2, 1},
-             {{{"R", "G", "B"}, std::vector<float>(6, 1.0F)}}, {});
+    for (const auto& [name, w, h] :
+         {std::tuple{"low.exr", 32, 8}, {"narrow.exr", 8, 16}, {"turned.exr", 16, 32}})
+        writeExr(pictures.folder / name, {w, h, 0, 0, w, h},
+                 {{{"Y"}, std::vector<float>(static_cast<std::size_t>(w * h), 1.0F)}}, {});
     writePng(pictures.folder / "a.png", 1, 1, {1, 2, 3});
-    CHECK(faultOf(pictures.command("a.exr", "small.exr")) ==
-          "a.exr has 32 x 16 pixels, small.exr has 2 x 1: they cannot be compared");
+    CHECK(faultOf(pictures.command("a.exr", "low.exr")) ==
+          "a.exr has 32 x 16 pixels, low.exr has 32 x 8: they cannot be compared");
+    CHECK(faultOf(pictures.command("a.exr", "narrow.exr")).ends_with("they cannot be compared"));
+    CHECK(faultOf(pictures.command("turned.exr", "a.exr")).ends_with("they cannot be compared"));
     const std::string notFinite = "nan.exr: pixel 5, 2 is NaN or infinite, expected finite numbers";
     CHECK(faultOf(pictures.command("nan.exr", "a.exr")) == notFinite);
     CHECK(faultOf(pictures.command("a.exr", "nan.exr")) == notFinite);
-    CHECK(faultOf(pictures.command("a.exr", "a.png")) ==
-          "a.png: holds encoded colours, expected light: an EXR or HDR file");
+    pictures.folder.write("deep.png", deepPng());
+    for (const std::string name : {"a.png", "deep.png"})
+        CHECK(faultOf(pictures.command("a.exr", name)) ==
+              name + ": holds encoded colours, expected light: an EXR or HDR file");
     CHECK(faultOf(pictures.command("none.exr", "a.exr"), ExitCode::missingFile) ==
           "none.exr: no such file");
     CompareCommand toJpeg = pictures.command("a.exr", "a.exr");
@@ -238,7 +255,7 @@ TEST_CASE("Compare --z: means that the noise allows pass, others fail with their
     std::vector<float> picture = reference;
     for (int y = 0; y < 16; ++y)
         for (int x = 16; x < 32; ++x)
-            picture[static_cast<std::size_t>(3 * (y * width + x) + 1)] += 0.1F;
+            picture[static_cast<std::size_t>(3 * (y * width + x) + 2)] += 0.1F;
     pictures.writeWithVariance("a.exr", picture, 0.01F);
     pictures.writeWithVariance("near.exr", std::vector<float>(values, 1.005F), 0.01F);
 
@@ -254,7 +271,7 @@ TEST_CASE("Compare --z: means that the noise allows pass, others fail with their
     told.testsMeans = true;
     told.asJson = false;
     CHECK(compareFiles(told).code == ExitCode::failure);
-    const std::string where = "green of the 16 x 16 pixels at 16, 0: +0.1 ± ";
+    const std::string where = "blue of the 16 x 16 pixels at 16, 0: +0.1 ± ";
     CHECK(contains(compareFiles(told).text, where + "0.0088"));  // √(2 · 0.01 / 256)
     // A picture without noise halves the variance.
     for (const ExactPicture which : {ExactPicture::picture, ExactPicture::reference}) {

@@ -7,6 +7,7 @@
 #include "lens/outer_pupil.h"
 #include "lens/polynomial_lens.h"
 #include "renderer/camera_focus.h"
+#include "renderer/lens_terms.h"
 #include "renderer/scene_parts.h"
 
 namespace etendue {
@@ -84,6 +85,8 @@ FitSettings loadFitSettings(const ConfigTable& table, const std::string& represe
     FitSettings settings;
     settings.form = representation == "sensor-state" ? FitForm::sensorState : FitForm::twoPoint;
     if (isAnamorphic(prescription)) settings.basis = PolynomialBasis::twoPlane;
+    if (representation == "auto" && table.has("terms"))
+        table.fail("terms", "representation = \"auto\" chooses them");
     settings.terms = static_cast<int>(table.integer("terms", {1, 1000}, settings.terms));
     settings.degree = static_cast<int>(table.integer("degree", {1, mostPower}, settings.degree));
     return settings;
@@ -97,8 +100,8 @@ std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, CameraSettin
     const std::filesystem::path file = table.file("lens");
     loading.files.push_back(file);
     const Prescription prescription = loadPrescription(file, table.text("zoom", ""));
-    const std::string representation =
-        table.choice("representation", {"two-point", "sensor-state", "traced"}, "two-point");
+    const std::string representation = table.choice(
+        "representation", {"two-point", "sensor-state", "traced", "auto"}, "two-point");
     const FitSettings fitSettings = loadFitSettings(table, representation, prescription);
     const LensSettings settings = loadLensSettings(table, prescription, camera, *loaded.scene);
     table.finish();  // a mistyped key is reported now, and not after seconds of fitting
@@ -123,10 +126,24 @@ std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, CameraSettin
     request.longestWavelengthNm = camera.isDispersive ? Wavelengths::longestNm : rgbNm;
     const FitDomain domain = fitDomain(prescription, request);
     const auto notice = [&](const std::string& sentence) { loading.notes.push_back(sentence); };
-    const LensFit fit =
-        cachedFit(prescription, domain, fitSettings, options.fitCache, notice, options.fitProgress);
-    loaded.lensModel = representation + ", " + std::to_string(fit.settings.terms) +
-                       " terms, degree " + std::to_string(fit.settings.degree);
+    const auto fitOf = [&](int terms) {
+        FitSettings wanted = fitSettings;
+        wanted.terms = terms;
+        return cachedFit(prescription, domain, wanted, options.fitCache, notice,
+                         options.fitProgress);
+    };
+    LensFit fit;
+    if (representation == "auto") {
+        ChosenFit chosen = chooseTerms(fitOf, camera.sensorWidthMm / camera.width, loaded.samples);
+        fit = std::move(chosen.fit);
+        loading.notes.push_back(std::move(chosen.reason));
+    } else {
+        fit = fitOf(fitSettings.terms);
+    }
+    loaded.lensModel =
+        std::string(fit.settings.form == FitForm::sensorState ? "sensor-state" : "two-point") +
+        ", " + std::to_string(fit.settings.terms) + " terms, degree " +
+        std::to_string(fit.settings.degree);
     loaded.fit = FitSummary{fit.settings.terms, fit.settings.degree, fit.errors.directionMrad.rms,
                             fit.errors.sensorMicrometres.rms};
     return std::make_shared<PolynomialLens>(prescription, fit,

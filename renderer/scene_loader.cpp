@@ -148,6 +148,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     root.files("include");
     loaded.film = loadFilm(root.table("film"));
     loadEstimator(root.table("estimator"), loaded);
+    if (options.samples) loaded.samples = *options.samples;
     loadMaterials(root.tables("material"), loading);
     if (isModel) addModel(file, loading);
     loadMeshes(root.tables("mesh"), root.tables("instance"), loading);

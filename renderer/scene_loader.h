@@ -53,7 +53,8 @@ struct LoadOptions {
     std::filesystem::path fitCache = {};  // folder of lens fits; empty: none is kept
     /// Hears how far a lens fit is: share in 0–1, and what is being done.
     std::function<void(double, std::string_view)> fitProgress = {};
-    bool disperses = true;  // camera.dispersion where no file and no override says it
+    bool disperses = true;            // camera.dispersion where no file and no override says it
+    std::optional<int> samples = {};  // in place of estimator.samples; no part of the hash
     /// A file whose [camera] is looked through in place of the scene's, from the scene's `from`,
     /// `to` and `up` unless it has its own; empty: none.
     std::filesystem::path camera = {};

@@ -104,6 +104,7 @@ void printNotes(const LoadedScene& loaded, bool isQuiet) {
 LoadOptions loadOptions(const RenderCommand& command, int threads) {
     LoadOptions options{command.overrides, threads, fitCacheDirectory()};
     options.camera = command.camera;
+    options.samples = command.samples;
     if (!command.techniques.empty())
         options.overrides.push_back("estimator.techniques=" + command.techniques);
     if (!command.size.empty()) {
@@ -186,9 +187,8 @@ ExitCode runRender(const RenderCommand& command) {
     const Filter filter(loaded.film.filter, loaded.film.filterRadius);
     const std::unique_ptr<Estimator> estimator = makeEstimator(loaded.estimator);
     RenderSettings settings;
-    const int fallback =
-        command.timeLimitSeconds ? static_cast<int>(unlimitedSamples) : loaded.samples;
-    settings.samples = static_cast<std::uint32_t>(command.samples.value_or(fallback));
+    const bool isTimed = command.timeLimitSeconds && !command.samples;
+    settings.samples = isTimed ? unlimitedSamples : static_cast<std::uint32_t>(loaded.samples);
     settings.seed = command.seed;
     settings.sampler = loaded.sampler;
     settings.threads = threads;

@@ -1,0 +1,28 @@
+// How many terms of a lens a picture is worth: representation = "auto" (docs/speed-accuracy.md).
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "lens/lens_fit.h"
+
+namespace etendue {
+
+/// relMSE ((a − r)² / (r² + 0.01), the mean over the picture) that a fit's stated errors come to:
+/// (g δ)² + τ², with δ the shift of the picture in pixels, rms, τ the error of J τ, rms, and g how
+/// much the logarithm of a picture changes from pixel to pixel.
+double expectedRelMse(const FitErrors& errors, double pixelMm);
+
+/// relMSE of `samples` per pixel, in a scene of little noise.
+double littleNoise(int samples);
+
+struct ChosenFit {
+    LensFit fit;
+    std::string reason;  // a sentence
+};
+
+/// The fit of the fewest terms whose expected relMSE is below a tenth of littleNoise(samples), and
+/// if there is none, that of the most. `fitOf` makes or loads one with as many terms.
+ChosenFit chooseTerms(const std::function<LensFit(int terms)>& fitOf, double pixelMm, int samples);
+
+}  // namespace etendue

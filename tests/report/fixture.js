@@ -178,6 +178,8 @@ function fixture() {
                            fitErrorMrad: mrad, fitErrorMicrons: microns, rayNs: ns, connectNs: 7.5 * ns });
     data.lenses.push({ camera: "fisheye", variant: "traced", description: "exact trace of 16 surfaces", terms: null, fitErrorMrad: null,
                        fitErrorMicrons: null, rayNs: 415, connectNs: 3900 });
+    data.fitErrors = fits.map(([terms, mrad], i) => ({ scene: "still-life", camera: "fisheye", variant: `${terms} terms`, relMse: i === 3 ? -1e-6 : 4e-3 * mrad ** 2.4,
+        relMseLow: i === 3 ? -8e-6 : 3.4e-3 * mrad ** 2.4, relMseHigh: i === 3 ? 7e-6 : 4.6e-3 * mrad ** 2.4 }));
     const through = (estimator, error, cost) => [...fits.map(([terms, mrad, , ns]) => ({ estimator, variant: `${terms} terms`, error,
         secondsPerSample: cost * (1 + ns / 300), misfit: 4e-3 * mrad ** 2.4 })), { estimator, variant: "traced", error, secondsPerSample: cost * 2.4 }];
     addGroup(data, random, "still-life", "fisheye", 3, [...through("pt", 0.9, 0.0045), ...through("bdpt", 0.24, 0.0095)], 2.3e-6);

@@ -70,7 +70,7 @@ test("flipper: values under the pointer and by keys are those of the picture, an
     const read = async () => {
         const text = (await page.locator(".readout.mono").innerText()).replace(/\u202f/g, "");
         const number = (part) => {
-            const [, mantissa, power] = part.match(/([−\d.]+)(?: × 10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?/);
+            const [, mantissa, power] = part.match(/([−\d.]+)(?:\s×\s10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?/);
             const exponent = power ? Number([...power].map((c) => (c === "⁻" ? "-" : "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c))).join("")) : 0;
             return Number(mantissa.replace("−", "-")) * 10 ** exponent;
         };

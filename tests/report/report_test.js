@@ -19,7 +19,9 @@ const resultsOf = ([scene, camera], from = data) => from.results.filter((r) => r
 /// The page's numbers back from its text: "1.2 × 10⁻⁶", "−0.99", "12 300".
 function parsed(text) {
     const digits = "⁰¹²³⁴⁵⁶⁷⁸⁹";
-    const [, mantissa, power] = text.replace(/\u202f/g, "").match(/([−]?[\d.]+)(?: × 10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?/);
+    if (/^10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]/.test(text)) return parsed(`1 × ${text}`);
+    if (text.includes("·")) return parsed(text.replace("·", " × "));
+    const [, mantissa, power] = text.replace(/\u202f/g, "").match(/([−]?[\d.]+)(?:\s×\s10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?/);
     const exponent = power ? Number([...power].map((c) => (c === "⁻" ? "-" : digits.indexOf(c))).join("")) : 0;
     return Number(mantissa.replace("−", "-")) * 10 ** exponent;
 }
@@ -34,7 +36,7 @@ test("the first screen tells the winner and by how much", () => withPage("fixtur
         const results = resultsOf(group);
         const best = results.reduce((a, b) => (b.efficiency > a.efficiency ? b : a));
         assert.equal(await rows.nth(i).locator(".winner").innerText(), best.estimator);
-        const [, value, low, high] = text.match(/bdpt needs ([\d.]+) × the time of pt \(([\d.]+)–([\d.]+)\)/);
+        const [, value, low, high] = text.match(/bdpt needs ([\d.]+)\s× the time of pt \(([\d.]+)–([\d.]+)\)/);
         const bdpt = results.find((r) => r.estimator === "bdpt");
         near(Number(value), 1 / bdpt.efficiencyRatio, 0.03, "ratio");
         near(Number(low), 1 / bdpt.efficiencyRatioHigh, 0.03, "low end");
@@ -94,7 +96,7 @@ test("convergence: legends tell slopes, the reference's own error and when it is
     assert.equal(await figures.nth(1).locator(".plot path.floor").count(), 1);
     assert.match(await figures.nth(1).innerText(), /too noisy .*its own error is 31 %/);
     assert.equal(await figures.nth(0).locator(".plot path.floor").count(), 0);
-    assert.match(await figures.nth(0).locator(".legend").innerText(), /1\.2 × 10⁻⁶, below this plot/);
+    assert.match(await figures.nth(0).locator(".legend").innerText(), /1\.2\s×\s10⁻⁶, below this plot/);
 }));
 
 test("convergence: keys read values, series hide, other errors and scenes can be chosen", () => withPage("fixture", data, {}, async (page) => {
@@ -154,7 +156,7 @@ test("lenses: a mark for every fit in every panel, and a row for every lens", ()
     const panels = page.locator("figure.lens");
     const counts = [];
     for (let i = 0; i < await panels.count(); ++i) counts.push((await marksOf(panels.nth(i))).flat().length);
-    assert.deepEqual(counts, [4, 4, 4, 4, 8, 8]);
+    assert.deepEqual(counts, [4, 4, 4, 4, 3, 8, 8]);
     const [x, y] = [await axisOf(panels.nth(2), "x"), await axisOf(panels.nth(2), "y")];
     (await marksOf(panels.nth(2)))[0].forEach(([px, py], i) => {
         assert.ok(Math.abs(px - x(data.lenses[i].terms)) < 0.5);
@@ -162,7 +164,19 @@ test("lenses: a mark for every fit in every panel, and a row for every lens", ()
     });
     assert.equal(await panels.nth(2).locator("path.level").count(), 1);
     const row = await page.locator("#lenses tbody tr").nth(2).innerText();
-    assert.match(row, /32 terms\s+two-point, 32 terms, degree 11\s+32\s+0\.22\s+1\.9\s+41\.0\s+308/);
+    assert.match(row, /32 terms\s+two-point, 32 terms, degree 11\s+32\s+0\.22\s+1\.9\s+41\.0\s+308\s+/);
+    assert.match(await page.locator("#lenses tbody tr").nth(3).innerText(), /< 7\.0\s×\s10⁻⁶/);  // not to be told from zero
+    // The advice is the fewest terms whose picture of equal time no further ones beat, in any comparison.
+    const advised = ["pt", "bdpt"].map((estimator) => {
+        const points = data.lenses.slice(0, 4).map((lens) => {
+            const result = data.results.find((r) => r.variant === lens.variant && r.estimator === estimator);
+            const last = result.curve[result.curve.length - 1];
+            return { terms: lens.terms, low: last.relMseLow, high: last.relMseHigh, error: last.relMse };
+        });
+        const best = points.reduce((a, b) => (b.error < a.error ? b : a));
+        return points.find((point) => point.low <= best.high).terms;
+    });
+    assert.equal(await page.locator("#answer .answers").last().locator(".winner").innerText(), `${Math.max(...advised)} terms`);
     assert.match(await page.locator("#lenses tbody tr").nth(4).innerText(), /traced\s+exact trace of 16 surfaces\s+–\s+–\s+–\s+415/);
 }));
 
@@ -184,7 +198,7 @@ test("data: saved JSON is the data, CSV has a row for each", () => withPage("hos
     for (const details of await page.locator("#data details").all()) await details.locator("summary").click();
     await page.waitForTimeout(50);
     assert.deepEqual(await page.locator("#data tbody").evaluateAll((bodies) => bodies.map((body) => body.children.length)),
-                     [data.results.length, steps.length, data.references.length, data.lenses.length]);
+                     [data.results.length, steps.length, data.references.length, data.lenses.length, data.fitErrors.length]);
 }));
 
 /// RFC 4180.

@@ -9,7 +9,7 @@ function needs(result, first, isLong) {
     const { value, low, high } = timeRatio(result);
     if (!isNumber(value)) return [`${labelOf(result)}: ${notTold}`];
     const parts = intervalParts(value, low, high);
-    return [isLong ? `${labelOf(result)} needs ` : `${labelOf(result)} `, strong(`${parts.value} ×`),
+    return [isLong ? `${labelOf(result)} needs ` : `${labelOf(result)} `, strong(`${parts.value}\u00a0×`),
             isLong ? ` the time of ${labelOf(first)}` : "",
             parts.range ? element("span", { class: "muted" }, ` (${parts.range})`) : ""];
 }
@@ -105,9 +105,10 @@ function lensAdvice(model, camera) {
             const key = JSON.stringify([result.scene, result.estimator]);
             if (!comparisons.has(key)) comparisons.set(key, []);
             const last = (result.curve || [])[(result.curve || []).length - 1] || {};
-            const factor = (bound) => (isNumber(bound) && last.relMse > 0 ? bound / last.relMse : 1);
-            const error = result.equalTime.relMse;
-            comparisons.get(key).push({ lens, error, low: error * factor(last.relMseLow), high: error * factor(last.relMseHigh) });
+            const { relMse: error, relMseLow, relMseHigh } = result.equalTime;
+            // Without an interval of its own, that of the curve's end, as a factor.
+            const bound = (own, ofCurve) => (isNumber(own) ? own : isNumber(ofCurve) && last.relMse > 0 ? (error * ofCurve) / last.relMse : error);
+            comparisons.get(key).push({ lens, error, low: bound(relMseLow, last.relMseLow), high: bound(relMseHigh, last.relMseHigh) });
         }
     const told = [...comparisons.values()].filter((points) => points.length > 1);
     let advised = null;
@@ -116,34 +117,53 @@ function lensAdvice(model, camera) {
         const enough = points.find((point) => point.low <= best.high).lens;
         if (!advised || enough.terms > advised.terms) advised = enough;
     }
-    return { camera, entries, fits, advised, comparisons: told.length };
+    const misfits = new Map(fits.map((lens) => [lens, misfitOf(model, lens)]));
+    return { camera, entries, fits, advised, misfits, target: model.settings.targetRelMse };
 }
 
-function fitText(lens) {
+/// The most that a fit alone adds to the relMSE of any scene measured, at the upper end of its interval; null: not measured.
+function misfitOf(model, lens) {
+    const highs = model.fitErrors.filter((error) => isThrough(error, lens)).map((error) => error.relMseHigh ?? error.relMse).filter(isNumber);
+    return highs.length > 0 ? Math.max(0, ...highs) : null;
+}
+
+/// Where no pictures of equal time compare terms: the fewest whose misfit is below a tenth of the error aimed at.
+function enoughByMisfit({ fits, misfits, target }) {
+    return isNumber(target) ? fits.find((lens) => misfits.get(lens) !== null && misfits.get(lens) < 0.1 * target) : undefined;
+}
+
+function fitText(lens, misfit) {
     const errors = [];
     if (isNumber(lens.fitErrorMrad)) errors.push(`${formatNumber(lens.fitErrorMrad, 2)} mrad`);
     if (isNumber(lens.fitErrorMicrons)) errors.push(`${formatNumber(lens.fitErrorMicrons, 2)} µm`);
     const parts = [];
     if (errors.length > 0) parts.push(`fit error ${errors[0]}${errors[1] ? ` (${errors[1]})` : ""}`);
+    if (isNumber(misfit)) parts.push(`at most ${formatNumber(misfit, 2)} of relMSE by the fit alone`);
     if (isNumber(lens.rayNs)) parts.push(`${formatNumber(lens.rayNs)} ns a ray`);
     return parts.join(", ");
 }
 
 function lensAnswer(advice) {
-    const { fits, advised, entries } = advice;
+    const { fits, advised, entries, misfits } = advice;
     const exact = entries.find((lens) => !isNumber(lens.terms) && isNumber(lens.rayNs) && /trac/i.test(`${lens.variant} ${lens.description}`));
     const against = (lens) => (exact && lens && exact.rayNs > 0 && isNumber(lens.rayNs)
         ? ` An exact trace takes ${formatNumber(exact.rayNs)} ns.` : "");
     if (fits.length === 0) return { name: "no terms to choose", words: entries.map((lens) => lens.description || lens.variant).filter(Boolean).join("; ") };
     if (fits.length === 1)
-        return { name: `${fits[0].terms} terms`, words: `The only fit measured: ${fitText(fits[0])}.${against(fits[0])}` };
+        return { name: `${fits[0].terms} terms`, words: `The only fit measured: ${fitText(fits[0], misfits.get(fits[0]))}.${against(fits[0])}` };
+    const enough = advised ? undefined : enoughByMisfit(advice);
+    const sentence = (lens) => {
+        const facts = fitText(lens, misfits.get(lens));
+        return `${facts.charAt(0).toUpperCase()}${facts.slice(1)}.${against(lens)}`;
+    };
+    if (enough)
+        return { name: `${enough.terms} terms`, words: `The fewest by whose fit alone less than a tenth of the target relMSE arises; pictures of equal time were not compared. ${sentence(enough)}` };
     if (!advised)
         return { name: notTold, words: `No pictures through different numbers of terms were measured; fits of ${joined(fits.map((lens) => String(lens.terms)))} terms are below.` };
     const isMost = advised === fits[fits.length - 1];
     const why = isMost ? "Fewer give worse pictures in equal time; more were not measured."
         : "More gain nothing that can be told in pictures of equal time.";
-    const facts = fitText(advised);
-    return { name: `${advised.terms} terms`, words: `${why} ${facts.charAt(0).toUpperCase()}${facts.slice(1)}.${against(advised)}` };
+    return { name: `${advised.terms} terms`, words: `${why} ${sentence(advised)}` };
 }
 
 function lensAnswers(model) {

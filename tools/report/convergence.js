@@ -73,16 +73,17 @@ class ConvergenceFigure {
     draw(container, width) {
         const { measure, isOverTime } = this.view;
         const height = Math.round(Math.min(340, Math.max(250, width * 0.68)));
-        const frame = { left: 48, right: width - 10, top: 26, bottom: height - 42 };
+        const frame = { right: width - 10, top: 26, bottom: height - 42 };
         const series = this.series();
         const points = series.flatMap((s) => s.points);
         const floor = measure.key === "relMse" && this.group.reference ? this.group.reference.relMse : null;
-        const x = logScale(points.map((p) => p.x), [frame.left, frame.right], 1.35);
         const shown = points.map((p) => p.y);
         const lowest = d3.min(shown.filter((value) => value > 0));
         // A floor far below would squeeze the curves: the legend tells it then.
         this.isFloorShown = isNumber(floor) && floor > 0 && isNumber(lowest) && floor > lowest / 300;
         const y = logScale(this.isFloorShown ? [...shown, floor] : shown, [frame.bottom, frame.top]);
+        frame.left = leftFor(y);
+        const x = logScale(points.map((p) => p.x), [frame.left, frame.right], 1.35);
         const svg = svgIn(container, width, height,
             `${measure.name} of ${this.group.title} over ${isOverTime ? "seconds" : "samples a pixel"}`);
         drawAxes(svg, frame, x, y, { x: isOverTime ? "seconds" : "samples a pixel", y: measure.name });

@@ -20,7 +20,7 @@ function drawBars(model, groups, scale, isLast, container, width) {
     const bottom = y + 4;
     const svg = svgIn(container, width, bottom + (isLast ? 40 : 20), `Efficiency in ${groups[0].scene} over the first estimator's, with intervals`);
     const x = scale.copy().range([left, right]);
-    const ticks = logTicks(x, Math.floor((right - left) / 60));
+    const ticks = logTicks(x, tickGaps.x);
     const grid = svg.append("g").attr("class", "grid").attr("aria-hidden", true);
     grid.selectAll("line").data(ticks).join("line").attr("x1", (d) => x(d.value)).attr("x2", (d) => x(d.value)).attr("y1", top).attr("y2", bottom);
     grid.selectAll("text").data(ticks).join("text").attr("text-anchor", "middle").attr("x", (d) => x(d.value)).attr("y", bottom + 15).text((d) => d.text);

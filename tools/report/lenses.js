@@ -5,6 +5,18 @@ function resultsThrough(model, lens, scene) {
     return model.results.filter((result) => isThrough(result, lens) && (scene === null || result.scene === scene));
 }
 
+function misfitIn(model, lens, scene) {
+    return model.fitErrors.find((error) => isThrough(error, lens) && (scene === null || error.scene === scene)) || null;
+}
+
+/// An estimate around zero tells only how large it is at most.
+function misfitText(misfit) {
+    if (!misfit || !isNumber(misfit.relMse)) return "–";
+    const { relMse, relMseLow, relMseHigh } = misfit;
+    if (isNumber(relMseHigh) && (relMse <= 0 || relMseLow <= 0)) return `< ${formatNumber(Math.max(0, relMseHigh), 2)}`;
+    return formatNumber(relMse, 2);
+}
+
 /// {title, unit, series: [{label, style, points}], levels: [{label, value}]}
 function lensPanels(model, camera, scene) {
     const entries = model.lenses.filter((lens) => lens.camera === camera);
@@ -30,11 +42,15 @@ function lensPanels(model, camera, scene) {
             levels: others.flatMap((lens) => estimators.map((estimator) => ({ label: `${lens.variant || lens.description}, ${estimator}`, value: errorOf(lens, estimator) }))),
         };
     };
+    const misfits = fits.map((lens) => ({ lens, misfit: misfitIn(model, lens, scene) })).filter(({ misfit }) => misfit);
+    const misfitPanel = { title: "Picture, the fit alone", unit: "relMSE without noise", levels: [], series: [{ label: "", style: ink,
+        points: misfits.map(({ lens, misfit }) => ({ x: lens.terms, y: misfit.relMse, low: misfit.relMseLow, high: misfit.relMseHigh })) }] };
     const panels = [
         ofLens("Fit error of directions", "mrad", [["fitErrorMrad", ""]]),
         ofLens("Fit error of positions", "µm", [["fitErrorMicrons", ""]]),
         ofLens("A camera ray", "ns", [["rayNs", ""]]),
         ofLens("A connection", "ns", [["connectNs", ""]]),
+        misfitPanel,
         ofPictures("Picture after equal time", "relMSE", "equalTime"),
         ofPictures("Picture of equal samples", "relMSE", "equalSamples"),
     ];
@@ -42,18 +58,19 @@ function lensPanels(model, camera, scene) {
     return panels.filter((panel) => panel.series.some((s) => s.points.some((point) => isNumber(point.y) && point.y > 0)));
 }
 
-function drawLensPanel(panel, container, width) {
-    const height = Math.round(Math.min(240, Math.max(190, width * 0.66)));
-    const frame = { left: 48, right: width - 12, top: 12, bottom: height - 42 };
+function drawLensPanel(panel, terms, container, width) {
+    const height = Math.round(Math.min(250, Math.max(214, width * 0.66)));
+    const frame = { right: width - 12, top: 26, bottom: height - 42 };
     const points = panel.series.flatMap((s) => s.points).filter((point) => isNumber(point.y) && point.y > 0);
-    const x = logScale(points.map((point) => point.x), [frame.left, frame.right], 1.2);
     const y = logScale([...points.map((point) => point.y), ...panel.levels.map((level) => level.value)], [frame.bottom, frame.top], 1.4);
+    frame.left = leftFor(y);
+    const x = logScale(terms, [frame.left, frame.right], 1.2);
     const svg = svgIn(container, width, height, `${panel.title} in ${panel.unit} over terms`);
     let free = -Infinity;
-    const xTicks = [...new Set(points.map((point) => point.x))].sort((a, b) => a - b)
+    const xTicks = terms
         .filter((value) => { const isFree = x(value) - free >= 26; if (isFree) free = x(value); return isFree; })
         .map((value) => ({ value, text: String(value) }));
-    drawAxes(svg, frame, x, y, { x: "terms", y: "" }, { x: xTicks });
+    drawAxes(svg, frame, x, y, { x: "terms", y: panel.unit }, { x: xTicks });
     const clip = clippedTo(svg, frame);
     let above = -Infinity;
     for (const level of [...panel.levels].sort((a, b) => b.value - a.value)) {
@@ -67,12 +84,12 @@ function drawLensPanel(panel, container, width) {
     for (const s of panel.series) drawSeries(svg, clip, x, y, s);
 }
 
-function lensFigure(panel) {
+function lensFigure(panel, terms) {
     const plot = element("div", { class: "plot" });
-    drawToWidth(plot, (container, width) => drawLensPanel(panel, container, width));
+    drawToWidth(plot, (container, width) => drawLensPanel(panel, terms, container, width));
     const named = panel.series.filter((s) => s.label);
     return element("figure", { class: "lens" },
-        element("figcaption", {}, strong(panel.title), element("span", { class: "muted" }, `, ${panel.unit}`)), plot,
+        element("figcaption", {}, strong(panel.title)), plot,
         named.length === 0 ? null : element("ul", { class: "legend" }, named.map((s) => element("li", {}, seriesKey(s.style), element("span", {}, s.label)))));
 }
 
@@ -86,27 +103,30 @@ function lensTable(model, caption, entries, scene) {
     const pictureColumn = (estimator, key, name) => ({ head: `${estimator} relMSE, ${name}`,
         text: (lens) => (error(estimator, key)(lens) === null ? "–" : formatNumber(error(estimator, key)(lens))), sort: error(estimator, key) });
     const isOneCamera = new Set(entries.map((lens) => lens.camera)).size === 1;
+    const nameOf = (lens) => (isOneCamera ? lens.variant : [lens.camera, lens.variant].filter(Boolean).join(", "));
     return dataTable(caption, [
-        isOneCamera ? { head: "lens", isText: true, text: (lens) => lens.variant || lens.description, sort: (lens) => lens.variant }
-            : { head: "camera", isText: true, text: (lens) => [lens.camera, lens.variant].filter(Boolean).join(", "), sort: (lens) => lens.camera },
-        { head: "model", isText: true, text: (lens) => lens.description || "–", sort: (lens) => lens.description },
+        { head: isOneCamera ? "lens" : "camera", isText: true, sort: nameOf,
+          text: (lens) => element("span", {}, nameOf(lens), element("span", { class: "muted model" }, lens.description || "")) },
         { head: "terms", key: "terms", text: (lens) => (isNumber(lens.terms) ? formatCount(lens.terms) : "–"), sort: (lens) => lens.terms },
         { head: "fit error / mrad", ...number("fitErrorMrad", 2) },
         { head: "fit error / µm", ...number("fitErrorMicrons", 2) },
         { head: "ray / ns", ...number("rayNs") },
         { head: "connection / ns", ...number("connectNs") },
+        ...(entries.some((lens) => misfitIn(model, lens, scene)) ? [{ head: "relMSE, fit alone", text: (lens) => misfitText(misfitIn(model, lens, scene)),
+            sort: (lens) => (misfitIn(model, lens, scene) || {}).relMse }] : []),
         ...estimators.flatMap((estimator) => [pictureColumn(estimator, "equalTime", "equal time"), pictureColumn(estimator, "equalSamples", "equal samples")]),
     ].filter(({ key }) => !key || entries.some((lens) => isNumber(lens[key]))), entries);
 }
 
 function drawLens(model, camera) {
     const entries = model.lenses.filter((lens) => lens.camera === camera);
-    const scenes = model.scenes.filter((scene) => entries.some((lens) => resultsThrough(model, lens, scene).length > 0));
+    const isShown = (scene) => entries.some((lens) => resultsThrough(model, lens, scene).length > 0 || misfitIn(model, lens, scene));
+    const scenes = [...new Set([...model.scenes, ...model.fitErrors.map((error) => error.scene)])].filter(isShown);
     const body = element("div");
     const draw = (scene) => {
         const panels = lensPanels(model, camera, scene);
-        const hasFits = panels.some((panel) => new Set(panel.series.flatMap((s) => s.points.map((point) => point.x))).size > 1);
-        body.replaceChildren(...(hasFits ? [element("div", { class: "lens-panels" }, panels.map(lensFigure))] : []), lensTable(model, `${camera}: terms, fit, time, picture`, entries, scene));
+        const terms = [...new Set(entries.map((lens) => lens.terms).filter(isNumber))].sort((a, b) => a - b);
+        body.replaceChildren(...(terms.length > 1 ? [element("div", { class: "lens-panels" }, panels.map((panel) => lensFigure(panel, terms)))] : []), lensTable(model, `${camera}: terms, fit, time, picture`, entries, scene));
     };
     draw(scenes.length > 0 ? scenes[0] : null);
     return element("div", { class: "lens-camera" }, element("h3", {}, cameraPhrase(camera)),
@@ -129,6 +149,6 @@ function drawLenses(model, section) {
         section.append(element("p", {}, "More terms fit better and cost more: what that is worth shows in the picture after equal time, ",
             "whose error has the noise and the misfit of the lens in it. Dashed lines are lenses without terms."),
             ...traded.map((camera) => drawLens(model, camera)));
-    if (others.length > 0) section.append(lensTable({ ...model, results: [] }, traded.length > 0 ? "Other cameras" : "What rays and connections cost", others, null));
+    if (others.length > 0) section.append(lensTable({ ...model, results: [], fitErrors: [] }, traded.length > 0 ? "Other cameras" : "What rays and connections cost", others, null));
     return true;
 }

@@ -15,7 +15,7 @@ function groupTitle(group) {
 function buildModel(data) {
     const model = {
         data, groups: [], results: data.results || [], lenses: data.lenses || [],
-        references: data.references || [], pictures: data.pictures || [], settings: data.settings || {},
+        references: data.references || [], fitErrors: data.fitErrors || [], pictures: data.pictures || [], settings: data.settings || {},
     };
     const groups = new Map();
     const groupOf = ({ scene, camera }) => {
@@ -60,7 +60,7 @@ function timeRatio(result) {
 /// Whether a picture was taken through a lens. A scene's own camera is "own" in results and may be
 /// "scene, own" among the lenses, which know no scenes.
 function isThrough(result, lens) {
-    return result.variant === lens.variant && (result.camera === lens.camera || `${result.scene}, ${result.camera}` === lens.camera);
+    return (result.variant || "") === (lens.variant || "") && (result.camera === lens.camera || `${result.scene}, ${result.camera}` === lens.camera);
 }
 
 /// Whether the intervals leave open which of two is the more efficient.

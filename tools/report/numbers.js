@@ -2,6 +2,7 @@
 
 const notTold = "not to be told";
 const thinSpace = "\u202f";
+const timesTen = "\u00a0×\u00a010";  // never at the end of a line
 
 function isNumber(value) {
     return typeof value === "number" && Number.isFinite(value);
@@ -34,7 +35,7 @@ function formatNumber(value, digits = 3) {
     if (value === 0) return "0";
     const exponent = exponentOf(value);
     if (isUnwieldy(exponent))
-        return fixed(value / 10 ** exponent, digits - 1) + " × 10" + superscript(exponent);
+        return fixed(value / 10 ** exponent, digits - 1) + timesTen + superscript(exponent);
     return fixed(value, digits - 1 - exponent);
 }
 
@@ -70,7 +71,7 @@ function intervalParts(value, low, high) {
     const exponent = exponentOf(value === 0 ? (high - low) / 2 : value);
     const scale = isUnwieldy(exponent) ? 10 ** exponent : 1;
     const decimals = decimalsFor((high - low) / 2 / scale, scale === 1 ? exponent : 0);
-    const suffix = scale === 1 ? "" : " × 10" + superscript(exponent);
+    const suffix = scale === 1 ? "" : timesTen + superscript(exponent);
     return {
         value: fixed(value / scale, decimals) + suffix,
         range: fixed(low / scale, decimals) + dash + fixed(high / scale, decimals) + suffix,

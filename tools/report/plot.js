@@ -6,27 +6,41 @@ function markPath(style, area = 44) {
     return d3.symbol().type(markShapes[style.mark]).size(area)();
 }
 
-function powerText(value) {
-    const exponent = Math.round(Math.log10(value));
-    if (exponent >= -3 && exponent <= 4) return fixed(value, Math.max(0, -exponent));
-    return "10" + superscript(exponent);
+function tickText(value) {
+    const exponent = exponentOf(value);
+    if (exponent >= -3 && exponent <= 4) return formatChosen(value);
+    const mantissa = Math.round((value / 10 ** exponent) * 10) / 10;
+    return (mantissa === 1 ? "" : `${mantissa}·`) + "10" + superscript(exponent);
 }
 
-/// Ticks with text: the powers of ten, or also 2 and 5 where there are few of those.
-function logTicks(scale, most = 7) {
+// Leading digits of ticks, the roundest first: as many are taken as there is room for.
+const tickDigits = [[1], [2, 5], [3, 1.5, 4, 7, 6, 8, 9]];
+
+/// Ticks at least `gap` pixels apart: powers of ten, and where those are few numbers between them.
+function logTicks(scale, gap) {
     const [low, high] = scale.domain();
     const decades = Math.log10(high / low);
-    const first = Math.ceil(Math.log10(low) - 1e-9);
-    const last = Math.floor(Math.log10(high) + 1e-9);
-    const powers = d3.range(first, last + 1).map((exponent) => 10 ** exponent);
-    if (decades > 2 || powers.length > 2) {
-        const step = Math.ceil(powers.length / most);
-        return powers.filter((power, i) => i % step === 0).map((value) => ({ value, text: powerText(value) }));
-    }
-    const factors = decades > 0.9 ? [1, 2, 5] : [1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9];
-    return d3.range(first - 1, last + 1).flatMap((exponent) => factors.map((factor) => factor * 10 ** exponent))
-        .filter((value) => value >= low * 0.999 && value <= high * 1.001)
-        .map((value) => ({ value, text: formatChosen(value) }));
+    const exponents = d3.range(Math.floor(Math.log10(low)), Math.ceil(Math.log10(high)) + 1);
+    const perDecade = Math.abs(scale(10) - scale(1));
+    const step = Math.max(1, Math.ceil(gap / perDecade));
+    const taken = [];
+    const take = (value) => {
+        if (value < low * 0.999 || value > high * 1.001) return;
+        if (taken.every((other) => Math.abs(scale(other) - scale(value)) >= gap)) taken.push(value);
+    };
+    for (const digits of tickDigits.slice(0, decades > 2.2 ? 1 : decades > 0.9 ? 2 : 3))
+        for (const digit of digits)
+            for (const exponent of exponents)
+                if (step === 1 || exponent % step === 0) take(Number(`${digit}e${exponent}`));
+    return taken.sort((p, q) => p - q).map((value) => ({ value, text: tickText(value) }));
+}
+
+const tickGaps = { x: 58, y: 24 };
+
+/// Room for the ticks' texts at the left.
+function leftFor(y) {
+    const longest = d3.max(logTicks(y, tickGaps.y), ({ text }) => text.length) || 1;
+    return Math.round(14 + 7 * longest);
 }
 
 /// A logarithmic scale around positive values, with a margin on both ends.
@@ -47,8 +61,8 @@ function svgIn(container, width, height, label) {
 /// Grid, ticks and axis names. `frame`: {left, right, top, bottom}, the edges of the plotted area.
 function drawAxes(svg, frame, x, y, names, ticks = {}) {
     const grid = svg.append("g").attr("class", "grid").attr("aria-hidden", true);
-    const xTicks = ticks.x || logTicks(x, Math.max(3, Math.floor((frame.right - frame.left) / 60)));
-    const yTicks = ticks.y || logTicks(y);
+    const xTicks = ticks.x || logTicks(x, tickGaps.x);
+    const yTicks = logTicks(y, tickGaps.y);
     grid.selectAll("line.x").data(xTicks).join("line").attr("class", "x")
         .attr("x1", (d) => x(d.value)).attr("x2", (d) => x(d.value)).attr("y1", frame.top).attr("y2", frame.bottom);
     grid.selectAll("line.y").data(yTicks).join("line").attr("class", "y")

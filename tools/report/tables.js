@@ -34,6 +34,8 @@ function dataSets(model) {
             own("scene", true), own("camera", true), own("estimator", true), own("samples"), own("seconds"), own("relMse"), own("isTooNoisy"), own("verdict", true)]) },
         { name: "lenses", title: "Lenses", rows: model.lenses, columns: valueColumns([
             own("camera", true), own("variant", true), own("description", true), own("terms"), own("fitErrorMrad"), own("fitErrorMicrons"), own("rayNs"), own("connectNs")]) },
+        { name: "fits", title: "What fits alone do to pictures", rows: model.fitErrors, columns: valueColumns([
+            own("scene", true), own("camera", true), own("variant", true), own("relMse"), own("relMseLow"), own("relMseHigh")]) },
     ].filter((set) => set.rows.length > 0);
 }
 

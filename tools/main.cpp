@@ -31,11 +31,12 @@ Examples:
   etendue render scene.toml -o a.exr --time 60 --layers albedo,normal,depth
   etendue check scene.toml
   etendue replay scene.toml --pixel 360,240 --sample 0 -s estimator.kind=bdpt
+  etendue compare out/picture.exr out/reference.exr --error-image out/error.png
   etendue bench agreement cornell-box --cameras pinhole,double-gauss
   etendue lens info double-gauss-100mm
 
 Exit codes:
-  0 success   1 failure (disk full, out of memory)   64 wrong usage   65 bad input
+  0 success   1 failure (disk full, a limit exceeded)   64 wrong usage   65 bad input
   66 missing file   75 stopped early, with a valid partial picture written
 
 docs/scene-format.md describes the scene files.)";

@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "renderer/render.h"
-#include "statistics/picture_comparison.h"
+#include "statistics/image_error.h"
 #include "statistics/statistics.h"
 
 namespace etendue {
@@ -61,30 +61,39 @@ FitImageError errorOf(const Matrix& products) {
     const double standardError = (n - 1.0) * summarize(without).standardError;
     const double halfWidth = studentQuantile(0.95, n - 1.0) * standardError;
     const double mean = all / (n * (n - 1.0));
-    return {mean, {mean - halfWidth, mean + halfWidth}};
+    return {mean, {mean - halfWidth, mean + halfWidth}, 0.0};
 }
 
 }  // namespace
 
-std::optional<FitImageError> fitImageError(const LoadedScene& traced, const LoadedScene& fitted,
-                                           const FitErrorSettings& settings,
-                                           const std::function<bool()>& goOn) {
-    const auto count = static_cast<std::size_t>(settings.seeds);
-    std::vector<Picture> differences;
-    Picture reference;
+std::optional<std::vector<Picture>> fitErrorPictures(const LoadedScene& loaded,
+                                                     const FitErrorSettings& settings,
+                                                     const std::function<bool()>& goOn) {
+    std::vector<Picture> pictures;
     for (int seed = 0; seed < settings.seeds; ++seed) {
-        const std::optional<Picture> exact = pictureOf(traced, settings, seed, goOn);
-        std::optional<Picture> picture =
-            exact ? pictureOf(fitted, settings, seed, goOn) : std::nullopt;
+        std::optional<Picture> picture = pictureOf(loaded, settings, seed, goOn);
         if (!picture) return {};
-        reference.resize(exact->size());
-        for (std::size_t i = 0; i < exact->size(); ++i) {
-            (*picture)[i] -= (*exact)[i];
-            reference[i] += (*exact)[i] / static_cast<float>(count);
-        }
-        differences.push_back(std::move(*picture));
+        pictures.push_back(*std::move(picture));
     }
-    return errorOf(productsOf(differences, reference));
+    return pictures;
+}
+
+FitImageError fitImageError(const std::vector<Picture>& exact, const std::vector<Picture>& fitted,
+                            const FitErrorSettings& settings) {
+    const auto count = static_cast<float>(exact.size());
+    Picture reference(exact.front().size());
+    std::vector<Picture> differences = fitted;
+    for (std::size_t s = 0; s < exact.size(); ++s)
+        for (std::size_t i = 0; i < reference.size(); ++i) {
+            differences[s][i] -= exact[s][i];
+            reference[i] += exact[s][i] / count;
+        }
+    FitImageError error = errorOf(productsOf(differences, reference));
+    // About their own mean the pictures vary by (n − 1) / n of their variance.
+    for (const Picture& picture : exact)
+        error.noiseOfOneSample += imageErrors(picture, reference).relMse * settings.samples /
+                                  static_cast<double>(exact.size() - 1);
+    return error;
 }
 
 }  // namespace etendue

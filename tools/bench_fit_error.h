@@ -7,6 +7,7 @@
 
 #include "renderer/scene_loader.h"
 #include "statistics/bootstrap.h"
+#include "statistics/picture_comparison.h"
 
 namespace etendue {
 
@@ -15,20 +16,26 @@ namespace etendue {
 struct FitImageError {
     double relMse = 0.0;
     Interval interval;
+    double noiseOfOneSample = 0.0;  // relMSE of `pt` with one sample per pixel, by the spread of
+                                    // the exact pictures
 };
 
 struct FitErrorSettings {
-    int seeds = 8;              // at least three
-    std::uint32_t samples = 4;  // per pixel of each picture
+    int seeds = 6;              // at least three
+    std::uint32_t samples = 2;  // per pixel of each picture
     int threads = 1;
 };
 
-/// `pt` through both lenses with the same random numbers, once for each seed: most of the noise
-/// cancels in the difference d of the two. What differences of two seeds i and j share is the fit's
-/// doing, so that the mean over pixels and pairs i ≠ j of d_i d_j / (r² + 0.01) has no noise in the
-/// mean. `goOn` returns false to give up; then the result is empty.
-std::optional<FitImageError> fitImageError(const LoadedScene& traced, const LoadedScene& fitted,
-                                           const FitErrorSettings& settings,
-                                           const std::function<bool()>& goOn);
+/// `pt` pictures through the scene's camera, one for each seed; empty when `goOn` returned false.
+std::optional<std::vector<Picture>> fitErrorPictures(const LoadedScene& loaded,
+                                                     const FitErrorSettings& settings,
+                                                     const std::function<bool()>& goOn);
+
+/// Of such pictures through the exact trace and through the fit, with the same settings and hence
+/// the same random numbers: most of the noise cancels in the difference d of two with one seed.
+/// What differences of two seeds i and j share is the fit's doing, so that the mean over pixels and
+/// pairs i ≠ j of d_i d_j / (r² + 0.01) has no noise in the mean; r is the mean of `exact`.
+FitImageError fitImageError(const std::vector<Picture>& exact, const std::vector<Picture>& fitted,
+                            const FitErrorSettings& settings);
 
 }  // namespace etendue

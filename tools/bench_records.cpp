@@ -68,7 +68,8 @@ Json jsonOf(const BenchFitError& e) {
                          {"variant", e.variant},
                          {"relMse", e.relMse},
                          {"low", e.low},
-                         {"high", e.high}});
+                         {"high", e.high},
+                         {"noiseOfOneSample", e.noiseOfOneSample}});
 }
 
 Json jsonOf(const BenchCheckpoint& c) {
@@ -165,8 +166,8 @@ BenchLens lensFrom(const Parsed& j) {
 }
 
 BenchFitError fitErrorFrom(const Parsed& j) {
-    return {text(j, "scene"),    text(j, "camera"), text(j, "variant"),
-            number(j, "relMse"), number(j, "low"),  number(j, "high")};
+    return {text(j, "scene"), text(j, "camera"), text(j, "variant"),           number(j, "relMse"),
+            number(j, "low"), number(j, "high"), number(j, "noiseOfOneSample")};
 }
 
 BenchRun runFrom(const Parsed& j) {

@@ -55,6 +55,7 @@ struct BenchLens {
 struct BenchFitError {
     std::string scene, camera, variant;
     double relMse = 0.0, low = 0.0, high = 0.0;
+    double noiseOfOneSample = 0.0;
 };
 
 /// Where and by what a suite was run.

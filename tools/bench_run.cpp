@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "lens/fit_cache.h"
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
-#include "statistics/flip.h"
 #include "tools/bench_fit_error.h"
 #include "tools/bench_lens.h"
 #include "tools/bench_reference.h"
 #include "tools/machine.h"
 #include "tools/progress.h"
+#include "tools/progressive_render.h"
 #include "tools/stop_request.h"
 #include "tools/version.h"
 
@@ -23,10 +22,6 @@ namespace {
 
 FrameWindow windowOf(const FilmSettings& film) {
     return {film.width, film.height, 0, 0, film.width, film.height};
-}
-
-double meanOf(const std::vector<float>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 /// One suite's run over one folder.
@@ -145,9 +140,8 @@ private:
         LoadedScene truth = load(view, {});
         const bool isFitted = truth.fit.has_value();
         if (isFitted) truth = load(view, {"camera.representation=traced"});
-        for (std::size_t v = 0; suite_.wantsFitErrors && isFitted && v < variants.size(); ++v)
-            if (variants[v].fit && !recordFitError(view, view.variants[v], truth, variants[v]))
-                return false;
+        if (suite_.wantsFitErrors && isFitted && !recordFitErrors(view, truth, variants))
+            return false;
         if (view.estimators.empty()) return true;
         const std::optional<Picture> reference = referenceOf(view, truth);
         if (!reference) return false;
@@ -186,24 +180,37 @@ private:
         return view.camera.name == "own" ? view.scene.name + ", own" : view.camera.name;
     }
 
-    bool recordFitError(const BenchView& view, const BenchVariant& variant,
-                        const LoadedScene& traced, const LoadedScene& fitted) {
-        const auto isSame = [&](const BenchFitError& e) {
-            return e.scene == view.scene.name && e.camera == view.camera.name &&
-                   e.variant == variant.name;
-        };
-        if (std::any_of(records_.fitErrors.begin(), records_.fitErrors.end(), isSame)) return true;
+    bool hasFitError(const BenchView& view, const BenchVariant& variant) const {
+        return std::any_of(records_.fitErrors.begin(), records_.fitErrors.end(),
+                           [&](const BenchFitError& e) {
+                               return e.scene == view.scene.name && e.camera == view.camera.name &&
+                                      e.variant == variant.name;
+                           });
+    }
+
+    bool recordFitErrors(const BenchView& view, const LoadedScene& traced,
+                         const std::vector<LoadedScene>& variants) {
         FitErrorSettings settings;
         settings.threads = settings_.threads;
-        const auto error = fitImageError(traced, fitted, settings, [&] {
-            bar_.update(fmt::format("{}, {}: error of the fit", titleOf(view), variant.name), 0.0);
-            return !isStopRequested();
-        });
-        if (!error) return false;
-        const BenchFitError record{view.scene.name, view.camera.name,    variant.name,
-                                   error->relMse,   error->interval.low, error->interval.high};
-        appendRecord(folder_.records(), record);
-        records_.fitErrors.push_back(record);
+        std::optional<std::vector<Picture>> exact, fitted;
+        for (std::size_t v = 0; v < variants.size(); ++v) {
+            const BenchVariant& variant = view.variants[v];
+            if (!variants[v].fit || hasFitError(view, variant)) continue;
+            const auto goOn = [&] {
+                bar_.update(fmt::format("{}, {}: error of the fit", titleOf(view), variant.name),
+                            0.0);
+                return !isStopRequested();
+            };
+            if (!exact) exact = fitErrorPictures(traced, settings, goOn);
+            if (exact) fitted = fitErrorPictures(variants[v], settings, goOn);
+            if (!exact || !fitted) return false;
+            const FitImageError error = fitImageError(*exact, *fitted, settings);
+            const BenchFitError record{
+                view.scene.name,    view.camera.name,    variant.name,          error.relMse,
+                error.interval.low, error.interval.high, error.noiseOfOneSample};
+            appendRecord(folder_.records(), record);
+            records_.fitErrors.push_back(record);
+        }
         return true;
     }
 
@@ -236,47 +243,27 @@ private:
 
     bool runOne(const BenchConfiguration& configuration, int seed, const LoadedScene& loaded,
                 const Picture& reference) {
-        BenchRun run{configuration, seed, loaded.hash, machineLoad(), 0, 0.0, {}};
         const std::string title = fmt::format(
             "{}, {}, {}{}{}", configuration.scene, configuration.camera, configuration.variant,
             configuration.variant.empty() ? "" : ", ", configuration.estimator);
-        EstimatorSettings kind = loaded.estimator;
-        kind.kind = configuration.estimator;
-        kind.techniques = {};
-        const std::unique_ptr<Estimator> estimator = makeEstimator(kind);
-        const Filter filter(loaded.film.filter, loaded.film.filterRadius);
-        Film film(windowOf(loaded.film), {}, loaded.film.color);
-        double seconds = 0.0;
-        std::uint32_t samples = 0;
-        while (seconds < suite_.seconds && samples < suite_.mostSamples) {
-            RenderSettings settings;
-            settings.firstSample = samples;
-            settings.samples = std::min(std::max(samples, 1u), suite_.mostSamples - samples);
-            settings.seed = static_cast<std::uint64_t>(seed);
-            settings.sampler = loaded.sampler;
-            settings.threads = settings_.threads;
-            settings.timeLimitSeconds = suite_.seconds - seconds;
-            const RenderResult result = render(
-                *loaded.scene, *loaded.camera, *estimator, filter, film, settings,
-                [&](const RenderProgress& p) {
-                    bar_.update(title, std::min(1.0, (seconds + p.seconds) / suite_.seconds));
-                    return !isStopRequested();
-                });
-            if (result.wasInterrupted) return false;
-            seconds += result.seconds;
-            samples += result.samples;
-            run.badSamples += result.badSampleCount;
-            run.checkpoints.push_back(
-                {samples, seconds, imageErrors(film.channels().front().pixels, reference)});
-        }
-        const Picture picture = film.channels().front().pixels;
-        run.flip = meanOf(hdrFlip(picture, reference, loaded.film.width));
+        const double load = machineLoad();
+        const ProgressiveSettings settings{configuration.estimator, suite_.seconds,
+                                           suite_.mostSamples, static_cast<std::uint64_t>(seed),
+                                           settings_.threads};
+        const auto render = renderProgressively(loaded, settings, reference, [&](double share) {
+            bar_.update(title, share);
+            return !isStopRequested();
+        });
+        if (!render) return false;
         writeExr(folder_.picture(configuration, seed), windowOf(loaded.film),
-                 {{{"R", "G", "B"}, picture}}, {});
+                 {{{"R", "G", "B"}, render->picture}}, {});
+        const BenchRun run{configuration,      seed,         loaded.hash,        load,
+                           render->badSamples, render->flip, render->checkpoints};
         appendRecord(folder_.records(), run);
         records_.runs.push_back(run);
+        const BenchCheckpoint& last = run.checkpoints.back();
         bar_.finishJob(fmt::format("{}, seed {}: {} samples in {:.2f} s, relMSE {:.3g}", title,
-                                   seed, samples, seconds, run.checkpoints.back().errors.relMse));
+                                   seed, last.samples, last.seconds, last.errors.relMse));
         return !isStopRequested();
     }
 

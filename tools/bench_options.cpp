@@ -132,7 +132,8 @@ void addRegress(CLI::App& bench, Chosen& chosen) {
         ->excludes(rebaseline);
     regress
         ->add_option("--samples", c.samples,
-                     "Per pixel of each picture; default: as the baseline says, or 16")
+                     "Per pixel of each picture; default: as the baseline says, or 16; of a "
+                     "reference 64")
         ->check(CLI::Range(2, 1 << 20).description(""))
         ->type_name("N");
     addSeed(regress, c.firstSeed);

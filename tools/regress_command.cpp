@@ -57,6 +57,7 @@ public:
             ReferenceSettings settings;
             settings.threads = threads_;
             settings.tileSize = tileSize;
+            if (command_.samples) settings.samples = static_cast<std::uint32_t>(*command_.samples);
             auto reference = makeReference(loaded, settings, goOn(bar, title));
             if (!reference) return;
             reference->scene = scene.name;
@@ -85,7 +86,7 @@ public:
             if (!before) {
                 row.cell = result.cell;
                 row.biasBound = boundFor(result.bias);
-                row.judgesRate = result.slope.verdict != SlopeVerdict::inconclusive;
+                row.judgesRate = result.rate != SlopeVerdict::inconclusive;
             }
             row.samples = result.samples;
             row.noise = result.noise.value;
@@ -129,7 +130,14 @@ private:
     }
 
     void testThrough(const NamedFile& scene, const NamedFile& camera, JobBar& bar) {
-        const RegressReference reference = readReference(fileOf(scene, camera));
+        const std::filesystem::path file = fileOf(scene, camera);
+        std::error_code ignored;  // any other failure to look is told by reading
+        if (!std::filesystem::exists(file, ignored))
+            throw InputError(fmt::format("{}: no such file; etendue bench regress {} --cameras {} "
+                                         "--make-references makes it",
+                                         file.string(), scene.name, camera.name),
+                             ExitCode::missingFile);
+        const RegressReference reference = readReference(file);
         const LoadedScene loaded = load(scene, camera, reference.width, reference.height, bar);
         const PictureRegions regions{reference.width, reference.height, tileSize};
         std::vector<std::pair<std::string, HeldAgainst>> all;
@@ -137,8 +145,7 @@ private:
             CellResult result;
             result.cell = {scene.name, camera.name, estimator};
             result.isReferenceStale = reference.sceneHash != loaded.hash;
-            const ReferencePicture& picture =
-                pictureFor(reference, estimator, regions, fileOf(scene, camera));
+            const ReferencePicture& picture = pictureFor(reference, estimator, regions, file);
             const auto held = testCell(loaded, picture, regions, result, bar);
             if (!held) return;
             bar.finishJob(fmt::format("{}: {}", etendue::titleOf(result.cell), outcomeOf(result)));
@@ -180,6 +187,7 @@ private:
         const auto errors = errorsBySeed(*rendered, picture);
         const std::vector<double> samples(settings.checkpoints.begin(), settings.checkpoints.end());
         result.slope = convergenceSlope(samples, errors);
+        result.rate = judgeRate(result.slope, cellCount(), seedCount);
         result.judgesRate = row && row->judgesRate;
         result.noise = noiseOf(errors, result.samples);
         if (!row) return held;

@@ -20,7 +20,7 @@ struct RegressCommand {
     std::filesystem::path data = "tests/regression";  // baseline.toml and references/
     bool makesReferences = false;                     // in place of testing
     bool rebaselines = false;                         // takes what was measured for the baseline
-    std::optional<int> samples;  // of cells that get a row in the baseline; else as the rows say
+    std::optional<int> samples;  // per pixel of each picture; else as the baseline's rows say
     std::optional<int> threads;
     std::uint64_t firstSeed = 0;  // of as many as there are estimators, times 32
     bool asJson = false;

@@ -137,6 +137,16 @@ Noise noiseOf(const std::vector<std::vector<double>>& errors, std::uint32_t samp
     return {meanOf(all), bootstrapInterval(all.size(), meanOf, confidence, 10'000, 0)};
 }
 
+SlopeVerdict judgeRate(const ConvergenceSlope& slope, std::size_t cells, int seeds) {
+    if (slope.verdict != SlopeVerdict::fail) return slope.verdict;
+    const double freedom = seeds - 1.0;
+    const double wider = studentQuantile(1.0 - sidakLevel(1.0 - confidence, cells), freedom) /
+                         studentQuantile(confidence, freedom);
+    const Interval reach{slope.slope - wider * (slope.slope - slope.interval.low),
+                         slope.slope + wider * (slope.interval.high - slope.slope)};
+    return reach.contains(-1.0) ? SlopeVerdict::pass : SlopeVerdict::fail;
+}
+
 NoiseVerdict judgeNoise(const Noise& before, const Noise& now, std::size_t cells, int seeds) {
     // Without noise there is no logarithm.
     if (!(now.interval.low > 0.0) || !(before.interval.low > 0.0))

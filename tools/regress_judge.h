@@ -78,6 +78,10 @@ struct Noise {
 };
 Noise noiseOf(const std::vector<std::vector<double>>& errors, std::uint32_t samples);
 
+/// As `slope.verdict` says, but that it fails only where chance brings that about in 1 % of runs of
+/// so many cells: the interval is widened to that level.
+SlopeVerdict judgeRate(const ConvergenceSlope& slope, std::size_t cells, int seeds);
+
 enum class NoiseVerdict { same, worse, better };
 /// Whether two intervals can be those of one noise. `cells`: as `tests`; `seeds`: of each.
 NoiseVerdict judgeNoise(const Noise& before, const Noise& now, std::size_t cells, int seeds);

@@ -28,9 +28,9 @@ const char* wordFor(BiasVerdict verdict) {
 
 std::string wordForRate(const CellResult& cell) {
     if (!cell.judgesRate) return "not judged";
-    return cell.slope.verdict == SlopeVerdict::pass           ? "ok"
-           : cell.slope.verdict == SlopeVerdict::inconclusive ? "INCONCLUSIVE"
-                                                              : "WRONG";
+    return cell.rate == SlopeVerdict::pass           ? "ok"
+           : cell.rate == SlopeVerdict::inconclusive ? "INCONCLUSIVE"
+                                                     : "WRONG";
 }
 
 const char* wordForNoise(const CellResult& cell) {

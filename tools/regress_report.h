@@ -17,6 +17,7 @@ struct CellResult {
     BiasJudgement bias;
     std::optional<double> biasBound;
     ConvergenceSlope slope;
+    SlopeVerdict rate = SlopeVerdict::inconclusive;  // see judgeRate
     bool judgesRate = true;
     Noise noise;
     std::optional<Noise> noiseBefore;  // none: the cell is not in the baseline
@@ -26,7 +27,7 @@ struct CellResult {
     bool isReferenceStale = false;  // the scene's files are not those it was made of
     double seconds = 0.0;
 
-    bool isRateBad() const { return judgesRate && slope.verdict != SlopeVerdict::pass; }
+    bool isRateBad() const { return judgesRate && rate != SlopeVerdict::pass; }
     bool isBiasBad() const {
         return bias.verdict == BiasVerdict::biased || bias.verdict == BiasVerdict::tooNoisy;
     }

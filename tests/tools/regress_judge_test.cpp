@@ -146,6 +146,26 @@ TEST_CASE("Regress judge: noise is told from noise by both intervals") {
     CHECK(judgeNoise(noise(1.0, 0.05), {5.0, {-0.2, 9.0}}, 100, 32) == NoiseVerdict::worse);
 }
 
+TEST_CASE("Regress judge: a slope is wrong by the level of all cells") {
+    const auto verdict = [](double slope, double halfWidth, std::size_t cells) {
+        const Interval interval{slope - halfWidth, slope + halfWidth};
+        const bool isNarrow = interval.width() < 0.1, isRight = interval.contains(-1.0);
+        return judgeRate({slope, interval,
+                          !isNarrow ? SlopeVerdict::inconclusive
+                          : isRight ? SlopeVerdict::pass
+                                    : SlopeVerdict::fail},
+                         cells, 32);
+    };
+    // Student's t of 31 is 2.74 at 99 %, 4.4 at a level of 0.01 / 100: 1.6 times as wide.
+    CHECK(verdict(-0.98, 0.03, 100) == SlopeVerdict::pass);
+    CHECK(verdict(-0.96, 0.03, 1) == SlopeVerdict::fail);
+    CHECK(verdict(-0.96, 0.03, 100) == SlopeVerdict::pass);
+    CHECK(verdict(-0.95, 0.03, 100) == SlopeVerdict::fail);
+    CHECK(verdict(-1.05, 0.03, 100) == SlopeVerdict::fail);
+    CHECK(verdict(-1.0, 0.06, 100) == SlopeVerdict::inconclusive);
+    CHECK(verdict(-0.5, 0.06, 100) == SlopeVerdict::inconclusive);
+}
+
 TEST_CASE("Regress judge: checkpoints are octaves, seven at most") {
     CHECK(checkpointsUpTo(16) == std::vector<std::uint32_t>{1, 2, 4, 8, 16});
     CHECK(checkpointsUpTo(256) == std::vector<std::uint32_t>{4, 8, 16, 32, 64, 128, 256});

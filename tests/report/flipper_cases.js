@@ -150,6 +150,7 @@ test("flipper: the wipe shows one picture left and another right, by mouse and k
     await assertDivided(0.8 * width);
     await viewport.focus();
     await page.keyboard.press("[");
+    assert.equal(await divider.getAttribute("aria-valuenow"), "78");
     await assertDivided(0.78 * width);
     await page.keyboard.press("w");
     await assertShows(page, 1);
@@ -229,7 +230,10 @@ test("flipper: two fingers zoom", () => onFlipper(async (page, viewport, box) =>
     assert.equal(await pressed(page), 0, "pinching is no click");
 }));
 
-test("flipper: sharp on a screen of two pixels to one, too", () => onFlipper(async (page) => assertShows(page, 0), { deviceScaleFactor: 2, viewport: { width: 390, height: 800 } }));
+test("flipper: sharp on a screen of two pixels to one, too", () => onFlipper(async (page, viewport, box) => {
+    await assertShows(page, 0);
+    assert.equal(await page.locator("canvas.picture").evaluate((canvas) => canvas.width), 2 * box.width);
+}, { deviceScaleFactor: 2, viewport: { width: 390, height: 800 } }));
 
 test("techniques: a picture at each (s, t), weighted or not, and each enlarges", () => withPage("fixture", data, {}, async (page) => {
     const { images } = data.techniques[0];

@@ -103,9 +103,9 @@ private:
             if (find(configuration, seed)) ++done;
         });
         const bool wantsTechniques = hasTechniques(view);
-        const bool isWhole =
-            done == all && (!wantsTechniques || std::filesystem::exists(folder_.techniques(
-                                                    view.scene.name, view.camera.name)));
+        const bool isWhole = all > 0 && done == all &&
+                             (!wantsTechniques || std::filesystem::exists(folder_.techniques(
+                                                      view.scene.name, view.camera.name)));
         if (isWhole) bar_.skipJobs(all);
         return isWhole;
     }

@@ -109,6 +109,15 @@ TEST_CASE("Bench: results of other settings, or of a scene that has changed, are
     CHECK(contains(changed.output, "as it was before it was changed"));
 }
 
+TEST_CASE("Bench: of a group without estimators the cameras are measured alone") {
+    const Bench bench;
+    writeFile(bench.folder / "scenes/suites/suite.toml",
+              "[suite]\nwidth = 8\nheight = 6\n[[group]]\nscenes = \"ball\"\nestimators = []\n");
+    CHECK(bench.run().code == 0);
+    CHECK(linesOf(bench.records()) == 2);
+    CHECK(contains(bench.records(), "\"kind\": \"lens\", \"camera\": \"ball, own\""));
+}
+
 TEST_CASE("Bench: scenes without a suite, and what is asked for wrongly") {
     const Bench bench;
     const std::string folder = "--scenes " + (bench.folder / "scenes").string();

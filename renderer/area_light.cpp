@@ -49,6 +49,7 @@ public:
     AreaLight(const std::vector<EmissiveTriangle>& triangles, Spectrum radiance, bool isTwoSided)
         : emitters_(triangles.begin(), triangles.end()),
           byArea_(distributionByArea(triangles)),
+          inverseArea_(1.0 / byArea_.totalWeight()),
           radiance_(radiance),
           isTwoSided_(isTwoSided),
           smallestPdf_(
@@ -93,6 +94,7 @@ private:
 
     std::vector<Emitter> emitters_;
     Distribution1D byArea_;
+    double inverseArea_;  // 1/m²
     Spectrum radiance_;
     bool isTwoSided_;
     float smallestPdf_;
@@ -119,7 +121,7 @@ std::optional<LightSample> AreaLight::sample(Vec3 receiver, Vec2 u) const {
     const double distance = length(toLight);
     if (distance == 0.0) return {};
 
-    const Vec3 direction = toFloat(toLight / distance);
+    const Vec3 direction = toFloat(toLight * (1.0 / distance));
     const float pdf = pdfSolidAngle({direction, static_cast<float>(distance), surface->normal});
     if (pdf == 0.0f) return {};
     return LightSample{.direction = direction,
@@ -133,7 +135,7 @@ std::optional<LightSample> AreaLight::sample(Vec3 receiver, Vec2 u) const {
 
 float AreaLight::pdfSolidAngle(const EmitterHit& hit) const {
     const double cosine = emissionCosine(hit), distance = hit.distance;
-    return cosine > 0.0 ? representable(distance * distance / (cosine * area())) : 0.0f;
+    return cosine > 0.0 ? representable(distance * distance * inverseArea_ / cosine) : 0.0f;
 }
 
 std::optional<EmittedRay> AreaLight::emit(Vec2 uPosition, Vec2 uDirection) const {
@@ -158,7 +160,7 @@ std::optional<EmittedRay> AreaLight::emit(Vec2 uPosition, Vec2 uDirection) const
 
 EmissionPdf AreaLight::emissionPdf(const EmitterHit& hit) const {
     const float sides = isTwoSided_ ? 0.5f : 1.0f;
-    return {representable(1.0 / area()),
+    return {representable(inverseArea_),
             sides * cosineHemispherePdfSolidAngle(emissionCosine(hit))};
 }
 

@@ -25,7 +25,7 @@ enum class Transport { radiance, importance };
 struct BsdfContext {
     Vec2 uv;
     Transport transport = Transport::radiance;
-    Wavelengths wavelengths{};
+    const Wavelengths& wavelengths = rgbWavelengths;  // not owned: a path has them once
 };
 
 struct BsdfValue {

@@ -1,5 +1,6 @@
 #include "renderer/distribution.h"
 
+#include <bit>
 #include <cassert>
 
 namespace etendue {
@@ -14,22 +15,19 @@ Distribution1D::Distribution1D(std::span<const double> weights) {
     }
     if (totalWeight_ > 0.0)
         for (double& c : cumulative_) c /= totalWeight_;
+    makeGuides();
 }
 
-std::optional<DiscreteSample> Distribution1D::sample(double u) const {
-    assert(u >= 0.0 && u < 1.0);
-    if (totalWeight_ <= 0.0) return {};
-    // The last bound at or below u begins a share that contains u, hence one that is not empty.
-    // Searched without a branch, for its outcome would be guessed wrong half of the time.
-    std::size_t index = 0;
-    for (std::size_t left = size(); left > 1;) {
-        const std::size_t half = left / 2;
-        index += half * static_cast<std::size_t>(cumulative_[index + half] <= u);
-        left -= half;
+void Distribution1D::makeGuides() {
+    // Twice as many as indices: a search then mostly ends where it begins. A power of two, so that
+    // a guide's place is exact.
+    guides_.resize(std::bit_ceil(2 * std::max<std::size_t>(size(), 1)));
+    std::uint32_t index = 0;
+    for (std::size_t i = 0; i < guides_.size(); ++i) {
+        const double u = static_cast<double>(i) / static_cast<double>(guides_.size());
+        while (index + 1 < size() && cumulative_[index + 1] <= u) ++index;
+        guides_[i] = index;
     }
-    const double share = probability(index);
-    constexpr double oneBelowOne = 1.0 - 0x1p-53;
-    return DiscreteSample{index, share, std::min((u - cumulative_[index]) / share, oneBelowOne)};
 }
 
 Distribution2D::Distribution2D(int width, int height, std::span<const double> weights)

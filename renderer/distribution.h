@@ -4,7 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,8 +32,19 @@ public:
     /// probability 0.
     explicit Distribution1D(std::span<const double> weights);
 
-    /// `u` in [0, 1). Empty when all weights are zero. O(log n).
-    std::optional<DiscreteSample> sample(double u) const;
+    /// `u` in [0, 1). Empty when all weights are zero. O(1) on average over u.
+    std::optional<DiscreteSample> sample(double u) const {
+        assert(u >= 0.0 && u < 1.0);
+        if (totalWeight_ <= 0.0) return {};
+        // The last bound at or below u begins a share that contains u, hence one that is not empty.
+        std::size_t index =
+            guides_[static_cast<std::size_t>(u * static_cast<double>(guides_.size()))];
+        while (cumulative_[index + 1] <= u) ++index;
+        const double share = probability(index);
+        constexpr double oneBelowOne = 1.0 - 0x1p-53;
+        return DiscreteSample{index, share,
+                              std::min((u - cumulative_[index]) / share, oneBelowOne)};
+    }
     /// Exactly the share of [0, 1) for which sample() returns `index`.
     double probability(std::size_t index) const {
         return cumulative_[index + 1] - cumulative_[index];
@@ -41,8 +54,12 @@ public:
     std::size_t size() const { return cumulative_.empty() ? 0 : cumulative_.size() - 1; }
 
 private:
+    void makeGuides();
+
     std::vector<double>
         cumulative_;  // size() + 1 values from 0 to 1; all 0 if no weight is positive
+    /// [i]: where the search for i / size begins, and for what follows up to the next.
+    std::vector<std::uint32_t> guides_;
     double totalWeight_ = 0.0;
 };
 

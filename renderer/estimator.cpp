@@ -78,7 +78,7 @@ CameraSample drawCameraSample(const View& view, SampleId id) {
 std::optional<FirstHit> firstHitOf(const Scene& scene, const CameraRay& ray) {
     const std::optional<SurfacePoint> point = scene.closestHit({ray.origin, ray.direction});
     if (!point) return {};
-    const BsdfContext context{point->uv, Transport::radiance, {}};  // as RGB, in any scene
+    const BsdfContext context{point->uv, Transport::radiance};  // as RGB, in any scene
     return FirstHit{*point, point->material->bsdf->albedo(context),
                     length(point->position - ray.origin)};
 }

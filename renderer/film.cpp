@@ -22,10 +22,6 @@ void addTo(double* sums, Vec3 v) {
 
 Vec3 firstLanes(const Spectrum& s) { return {s[0], s[1], s[2]}; }
 
-bool isUsable(Vec3 color) {
-    return isFinite(color) && color.x >= 0.0f && color.y >= 0.0f && color.z >= 0.0f;
-}
-
 bool sameWindow(const FrameWindow& a, const FrameWindow& b) {
     const auto numbers = [](const FrameWindow& w) {
         return std::tie(w.fullWidth, w.fullHeight, w.x, w.y, w.width, w.height);
@@ -47,8 +43,6 @@ double varianceOfMean(double sum, double sumOfSquares, double n) {
 Vec3d rgbOf(FilmColor color, Vec3d sum) {
     return color == FilmColor::xyz ? rec709FromXyz(sum) : sum;
 }
-
-bool isUsable(const Spectrum& value) { return isUsable(firstLanes(value)); }
 
 Film::Slots Film::slotsFor(const FilmLayers& layers) {
     Slots slots;
@@ -79,13 +73,6 @@ Film::Film(const FrameWindow& window, const FilmLayers& layers, FilmColor color)
                        static_cast<std::size_t>(slots_.count));
 }
 
-std::size_t Film::pixelNumber(int x, int y) const {
-    assert(x >= window_.x && x - window_.x < window_.width);
-    assert(y >= window_.y && y - window_.y < window_.height);
-    return static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
-           static_cast<std::size_t>(x - window_.x);
-}
-
 double* Film::pixelSums(int x, int y) {
     return state_.sums.data() + pixelNumber(x, y) * static_cast<std::size_t>(slots_.count);
 }
@@ -94,18 +81,14 @@ void Film::expectSplats() {
     state_.splatSums.resize(3 * state_.sums.size() / static_cast<std::size_t>(slots_.count));
 }
 
-void Film::addSplat(int x, int y, const Spectrum& value) {
-    addTo(state_.splatSums.data() + 3 * pixelNumber(x, y), firstLanes(value));
-}
-
 bool Film::countBad() {
     std::atomic_ref(state_.badSamples).fetch_add(1, std::memory_order_relaxed);
     return false;
 }
 
 bool Film::add(int x, int y, const Spectrum& value) {
+    if (!isUsable(value)) return countBad();
     const Vec3 color = firstLanes(value);
-    if (!isUsable(color)) return countBad();
     double* sums = pixelSums(x, y);
     addTo(sums, color);
     if (slots_.squares >= 0) {
@@ -116,7 +99,7 @@ bool Film::add(int x, int y, const Spectrum& value) {
 
 bool Film::addFeatures(int x, int y, const FilmFeatures& features) {
     const Vec3 albedo = firstLanes(features.albedo);
-    if (!isUsable(albedo) || !isFinite(features.normal) || !isFinite(features.position) ||
+    if (!isUsable(features.albedo) || !isFinite(features.normal) || !isFinite(features.position) ||
         !std::isfinite(features.depth))
         return countBad();
     double* sums = pixelSums(x, y);

@@ -2,7 +2,9 @@
 // counts, never averages, so that viewing, resuming and merging are the same thing.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "renderer/image_io.h"
@@ -50,7 +52,12 @@ enum class FilmColor { rgb, xyz };
 Vec3d rgbOf(FilmColor color, Vec3d sum);
 
 /// Whether a film would take the value: finite, and not negative.
-bool isUsable(const Spectrum& value);
+inline bool isUsable(const Spectrum& value) {
+    const auto isIn = [](float lane) {
+        return lane >= 0.0f && lane <= std::numeric_limits<float>::max();
+    };
+    return isIn(value[0]) && isIn(value[1]) && isIn(value[2]);
+}
 
 /// Pixels are addressed in the full frame; film point (x + 0.5, y + 0.5) is the centre of pixel
 /// (x, y). The functions that add to a pixel may run at the same time for different pixels.
@@ -70,7 +77,17 @@ public:
     void expectSplats();
     /// Adds light that a light path brought to pixel (x, y) of the window: the film holds the mean
     /// over all light paths. The value must be finite and not negative (isUsable).
-    void addSplat(int x, int y, const Spectrum& value);
+    void addSplat(int x, int y, const Spectrum& value) {
+        double* sums = state_.splatSums.data() + 3 * pixelNumber(x, y);
+        for (int i = 0; i < 3; ++i) sums[i] += value[i];
+    }
+    /// Has the pixel brought near, if it is one of the window's, for what will be added soon.
+    void expectSplat(int x, int y) const {
+        if (x < window_.x || x - window_.x >= window_.width || y < window_.y ||
+            y - window_.y >= window_.height)
+            return;
+        __builtin_prefetch(state_.splatSums.data() + 3 * pixelNumber(x, y), 1);
+    }
     void addLightPaths(std::uint64_t count) { state_.lightPaths += count; }
     bool countBad();
     /// Every pixel of the window has had `count` more samples: the means' divisor.
@@ -104,7 +121,12 @@ private:
     };
     static Slots slotsFor(const FilmLayers& layers);
 
-    std::size_t pixelNumber(int x, int y) const;
+    std::size_t pixelNumber(int x, int y) const {
+        assert(x >= window_.x && x - window_.x < window_.width);
+        assert(y >= window_.y && y - window_.y < window_.height);
+        return static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
+               static_cast<std::size_t>(x - window_.x);
+    }
     double* pixelSums(int x, int y);
 
     FrameWindow window_;

@@ -24,7 +24,11 @@ public:
     /// [−radius, radius). `u` in [0, 1)².
     Vec2 sample(Vec2 u) const;
     /// The density of sample(), 1/pixel²: the filter itself. A splat is multiplied by it.
-    float pdfFilm(Vec2 offset) const;
+    float pdfFilm(Vec2 offset) const {
+        return static_cast<float>(pdfAxis(offset.x) * pdfAxis(offset.y));
+    }
+    /// Its factor for one axis, 1/pixel.
+    double pdfAxis(float offset) const;
 
     FilterKind kind() const { return kind_; }
     float radius() const { return radius_; }
@@ -34,10 +38,10 @@ private:
     static const Table& tableOf(FilterKind kind);
 
     float sampleAxis(float u) const;
-    double pdfAxis(float offset) const;
 
     FilterKind kind_;
     float radius_;
+    double peak_;         // 1/pixel: of the box on one axis
     const Table* table_;  // one for each kind, made on first use
 };
 

@@ -3,10 +3,12 @@
 #include <embree3/rtcore.h>
 
 #include <bit>
+#include <cstddef>
 #include <cstring>
 #include <stdexcept>
 #include <string>
 
+#include "renderer/lanes.h"
 #include "renderer/material.h"
 
 namespace etendue {
@@ -15,29 +17,28 @@ namespace {
 
 constexpr float largestCoordinate = 1e18f;  // beyond 1.8e18 Embree aborts the process
 
-bool isTraceable(const Ray& ray) {
+/// Fills `out`; false if Embree must not see it.
+bool setRay(RTCRay& out, const Ray& ray) {
+    const FloatLanes origin = lanesOf(ray.origin), direction = lanesOf(ray.direction);
     // Written so that NaN fails.
-    const auto inside = [](Vec3 v) {
-        return std::abs(v.x) <= largestCoordinate && std::abs(v.y) <= largestCoordinate &&
-               std::abs(v.z) <= largestCoordinate;
+    const auto isInside = [](FloatLanes v) {
+        return (v >= -largestCoordinate) & (v <= largestCoordinate);
     };
-    return inside(ray.origin) && inside(ray.direction) && ray.direction != Vec3{} &&
-           ray.maxDistance >= 0.0f;
-}
-
-void setRay(RTCRay& out, const Ray& ray) {
-    out.org_x = ray.origin.x;
-    out.org_y = ray.origin.y;
-    out.org_z = ray.origin.z;
-    out.dir_x = ray.direction.x;
-    out.dir_y = ray.direction.y;
-    out.dir_z = ray.direction.z;
-    out.tnear = 0.0f;  // origins are offset by their error bound instead
+    const IntLanes inside = isInside(origin) & isInside(direction);
+    if (!(inside[0] & inside[1] & inside[2]) || ray.direction == Vec3{} ||
+        !(ray.maxDistance >= 0.0f))
+        return false;
+    // The fourth lanes are tnear, 0 since origins are offset by their error bound instead, and
+    // time.
+    static_assert(offsetof(RTCRay, tnear) == offsetof(RTCRay, org_x) + 3 * sizeof(float) &&
+                  offsetof(RTCRay, time) == offsetof(RTCRay, dir_x) + 3 * sizeof(float));
+    std::memcpy(&out.org_x, &origin, sizeof origin);
+    std::memcpy(&out.dir_x, &direction, sizeof direction);
     out.tfar = ray.maxDistance;
-    out.time = 0.0f;
     out.mask = ~0u;
     out.id = 0;
     out.flags = 0;
+    return true;
 }
 
 void throwOnError(RTCDevice device, const char* doing) {
@@ -200,12 +201,11 @@ Intersector::Intersector(std::span<const Mesh> meshes, std::span<const Instance>
 Intersector::~Intersector() = default;
 
 std::optional<RayHit> Intersector::closestHit(const Ray& ray) const {
-    if (!isTraceable(ray)) {
+    RTCRayHit query;
+    if (!setRay(query.ray, ray)) {
         ++refusedRays_;
         return std::nullopt;
     }
-    RTCRayHit query;
-    setRay(query.ray, ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
@@ -224,12 +224,11 @@ std::optional<RayHit> Intersector::closestHit(const Ray& ray) const {
 }
 
 bool Intersector::isOccluded(const Ray& ray) const {
-    if (!isTraceable(ray)) {
+    RTCRay query;
+    if (!setRay(query, ray)) {
         ++refusedRays_;
         return true;
     }
-    RTCRay query;
-    setRay(query, ray);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(embree_->scene, &context, &query);

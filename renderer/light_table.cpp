@@ -22,13 +22,6 @@ LightTable::LightTable(std::vector<std::unique_ptr<Light>> lights) : lights_(std
     choice_ = Distribution1D(weights);
 }
 
-std::optional<LightChoice> LightTable::sample(float u) const {
-    const auto chosen = choice_.sample(u);
-    if (!chosen) return {};
-    return LightChoice{static_cast<int>(chosen->index), static_cast<float>(chosen->probability),
-                       unitFloat(chosen->remainder)};
-}
-
 float LightTable::probability(int index) const {
     return static_cast<float>(choice_.probability(static_cast<std::size_t>(index)));
 }

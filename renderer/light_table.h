@@ -24,7 +24,12 @@ public:
     explicit LightTable(std::vector<std::unique_ptr<Light>> lights);
 
     /// `u` in [0, 1). Empty when no light has power.
-    std::optional<LightChoice> sample(float u) const;
+    std::optional<LightChoice> sample(float u) const {
+        const auto chosen = choice_.sample(u);
+        if (!chosen) return {};
+        return LightChoice{static_cast<int>(chosen->index), static_cast<float>(chosen->probability),
+                           unitFloat(chosen->remainder)};
+    }
     /// With which sample() chooses that light.
     float probability(int index) const;
 

@@ -36,6 +36,7 @@ TechniqueSet TechniqueSet::lightTracing() {
     TechniqueSet set;
     set.isAll_ = false;
     set.allWithT_.insert(1);
+    set.chart();
     return set;
 }
 
@@ -55,13 +56,22 @@ std::optional<TechniqueSet> TechniqueSet::parse(std::string_view text) {
             set.allWithS_.insert(*s);
         else
             set.allWithT_.insert(*t);
-        if (comma == std::string_view::npos) return set;
+        if (comma == std::string_view::npos) {
+            set.chart();
+            return set;
+        }
         text.remove_prefix(comma + 1);
     }
 }
 
-bool TechniqueSet::contains(Technique technique) const {
-    return isAll_ || allWithT_.contains(technique.t) || allWithS_.contains(technique.s) ||
+void TechniqueSet::chart() {
+    for (int t = 0; t < chartSize; ++t)
+        for (int s = 0; s < chartSize; ++s)
+            if (isListed({s, t})) chart_[static_cast<std::size_t>(t)] |= std::uint32_t{1} << s;
+}
+
+bool TechniqueSet::isListed(Technique technique) const {
+    return allWithT_.contains(technique.t) || allWithS_.contains(technique.s) ||
            single_.contains(technique);
 }
 

@@ -2,6 +2,8 @@
 // chapter 10). Pure: knows no scene and no camera. docs/bidirectional.md derives it.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <span>
@@ -31,7 +33,12 @@ public:
     /// when the text is something else.
     static std::optional<TechniqueSet> parse(std::string_view text);
 
-    bool contains(Technique technique) const;
+    bool contains(Technique technique) const {
+        return isAll_ ||
+               (isCharted(technique)
+                    ? (chart_[static_cast<std::size_t>(technique.t)] >> technique.s & 1) != 0
+                    : isListed(technique));
+    }
     bool isAll() const { return isAll_; }
     /// Any technique with t ≥ 2, up to paths of `maxDepth` edges.
     bool needsCameraWalk(int maxDepth) const;
@@ -42,9 +49,20 @@ private:
     template <class Predicate>
     bool any(int maxDepth, const Predicate& predicate) const;
 
+    /// Fills the chart from the sets.
+    void chart();
+    static bool isCharted(Technique technique) {
+        return technique.s >= 0 && technique.s < chartSize && technique.t >= 0 &&
+               technique.t < chartSize;
+    }
+    bool isListed(Technique technique) const;
+
+    static constexpr int chartSize = 32;  // of longer paths nearly none are made
+
     bool isAll_ = true;
     std::set<int> allWithS_, allWithT_;
     std::set<Technique> single_;
+    std::array<std::uint32_t, chartSize> chart_{};  // [t], a bit for each s
 };
 
 /// What the weights must know of a vertex. The two densities share one measure, whichever it is:

@@ -1,7 +1,9 @@
 #include "renderer/splats.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "renderer/parallel.h"
 
@@ -36,14 +38,26 @@ public:
         const Reach columns(splat.film.x, radius, window.x, window.x + window.width);
         const Reach rows(splat.film.y, radius, firstRow_, endRow_);
         const Spectrum value = rgb(splat.value.x, splat.value.y, splat.value.z);
-        for (int y = rows.first; y <= rows.last; ++y)
+        columnDensities_.clear();
+        for (int x = columns.first; x <= columns.last; ++x)
+            columnDensities_.push_back(
+                filter_.pdfAxis(splat.film.x - (static_cast<float>(x) + 0.5f)));
+        for (int y = rows.first; y <= rows.last; ++y) {
+            const double rowDensity =
+                filter_.pdfAxis(splat.film.y - (static_cast<float>(y) + 0.5f));
             for (int x = columns.first; x <= columns.last; ++x) {
-                const Vec2 center{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
-                const float share = filter_.pdfFilm(splat.film - center);
+                const auto share = static_cast<float>(
+                    columnDensities_[static_cast<std::size_t>(x - columns.first)] * rowDensity);
                 if (share == 0.0f) continue;
                 film_.addSplat(x, y, value * (splat.weight * share));
-                if (images_) images_->add(x, y, splat.technique, value * share, splat.weight);
+                if (images_) images_->add(x, y, {splat.s, splat.t}, value * share, splat.weight);
             }
+        }
+    }
+
+    /// That it will be added soon.
+    void expect(const SplatList::Splat& splat) const {
+        film_.expectSplat(static_cast<int>(splat.film.x), static_cast<int>(splat.film.y));
     }
 
 private:
@@ -51,44 +65,72 @@ private:
     Film& film_;
     TechniqueImages* images_;
     int firstRow_, endRow_;
+    std::vector<double> columnDensities_;  // of the splat at hand, 1/pixel
 };
 
 }  // namespace
 
+template <class Visit>
+void SplatList::forEachBand(int firstRow, int lastRow, const Visit& visit) const {
+    const int last = (lastRow - window_.y) / bandRows;
+    for (int b = (firstRow - window_.y) / bandRows; b <= last; ++b)
+        visit(static_cast<std::size_t>(b));
+}
+
 SplatList::SplatList(const FrameWindow& window, const Filter& filter)
     : window_(window),
       radius_(filter.radius()),
-      bands_(static_cast<std::size_t>((window.height + bandRows - 1) / bandRows)) {}
+      bandEnds_(static_cast<std::size_t>((window.height + bandRows - 1) / bandRows) + 1) {}
 
-void SplatList::add(std::uint32_t sample, const Contribution& splat) {
+void SplatList::clear() {
+    splats_.clear();
+    std::fill(bandEnds_.begin(), bandEnds_.end(), 0);
+}
+
+void SplatList::add(const Contribution& splat) {
     const Reach columns(splat.film.x, radius_, window_.x, window_.x + window_.width);
     const Reach rows(splat.film.y, radius_, window_.y, window_.y + window_.height);
     if (columns.first > columns.last || rows.first > rows.last) return;
-    const Vec3 value{splat.value[0], splat.value[1], splat.value[2]};
-    const int lastBand = (rows.last - window_.y) / bandRows;
-    for (int b = (rows.first - window_.y) / bandRows; b <= lastBand; ++b)
-        bands_[static_cast<std::size_t>(b)].push_back(
-            {splat.film, value, splat.weight, splat.technique, sample});
+    splats_.push_back({splat.film,
+                       {splat.value[0], splat.value[1], splat.value[2]},
+                       splat.weight,
+                       static_cast<std::uint16_t>(splat.technique.s),
+                       static_cast<std::uint16_t>(splat.technique.t)});
+    forEachBand(rows.first, rows.last, [&](std::size_t b) { ++bandEnds_[b + 1]; });
 }
 
-void SplatList::clear() {
-    for (auto& band : bands_) band.clear();
+void SplatList::sortByBand() {
+    // A counting sort: first [b + 1] becomes where band b begins, then it moves to its end.
+    std::uint32_t begin = 0;
+    for (std::size_t b = 1; b < bandEnds_.size(); ++b) begin += std::exchange(bandEnds_[b], begin);
+    numbers_.resize(begin);
+    for (std::uint32_t i = 0; i < splats_.size(); ++i) {
+        const Reach rows(splats_[i].film.y, radius_, window_.y, window_.y + window_.height);
+        forEachBand(rows.first, rows.last,
+                    [&](std::size_t b) { numbers_[bandEnds_[b + 1]++] = i; });
+    }
 }
 
-void addSplats(const std::vector<SplatList>& parts, const Filter& filter, std::uint32_t firstSample,
-               std::uint32_t sampleCount, int threads, Film& film, TechniqueImages* images) {
-    if (parts.empty()) return;
-    const auto bands = static_cast<std::size_t>(parts.front().bandCount());
+void addSplats(std::span<const SplatList> lists, const Filter& filter, int threads, Film& film,
+               TechniqueImages* images) {
+    if (lists.empty()) return;
+    const auto bands = static_cast<std::size_t>(lists.front().bandCount());
     parallelFor(bands, threads, [&](std::size_t b) {
         const int index = static_cast<int>(b);
         Band band(index, filter, film, images);
-        std::vector<std::size_t> next(parts.size(), 0);
-        for (std::uint32_t sample = firstSample; sample < firstSample + sampleCount; ++sample)
-            for (std::size_t p = 0; p < parts.size(); ++p) {
-                const auto& splats = parts[p].band(index);
-                for (std::size_t& i = next[p]; i < splats.size() && splats[i].sample == sample; ++i)
-                    band.add(splats[i]);
+        // A pixel somewhere in the film takes as long to come as several splats take to add.
+        constexpr std::size_t ahead = 8;
+        std::array<const SplatList::Splat*, ahead> waiting;
+        std::size_t count = 0;
+        for (const SplatList& list : lists)
+            for (const std::uint32_t number : list.band(index)) {
+                const SplatList::Splat*& place = waiting[count++ % ahead];
+                if (count > ahead) band.add(*place);
+                place = &list[number];
+                band.expect(*place);
             }
+        for (std::size_t i = count - std::min(count, ahead); i < count; ++i)
+            band.add(*waiting[i % ahead]);
     });
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "renderer/estimator.h"
@@ -12,39 +13,48 @@
 
 namespace etendue {
 
-/// What the samples of one part of the frame splat, kept apart by where it lands: one list for each
-/// band of the film's rows.
+/// What some samples splat, one after another, and in which bands of the film's rows it lands.
 class SplatList {
 public:
     struct Splat {
         Vec2 film;
         Vec3 value;  // not weighted
         float weight;
-        Technique technique;
-        std::uint32_t sample;
+        std::uint16_t s, t;  // the technique
     };
 
     SplatList(const FrameWindow& window, const Filter& filter);
 
-    /// Keeps what reaches the window.
-    void add(std::uint32_t sample, const Contribution& splat);
+    /// Empties it. Its memory is used again.
     void clear();
+    /// Keeps what reaches the window.
+    void add(const Contribution& splat);
+    /// To be called when all are there, and before they are looked at.
+    void sortByBand();
 
-    int bandCount() const { return static_cast<int>(bands_.size()); }
-    const std::vector<Splat>& band(int index) const {
-        return bands_[static_cast<std::size_t>(index)];
+    int bandCount() const { return static_cast<int>(bandEnds_.size()) - 1; }
+    /// Of the splats that reach the band, the numbers, rising.
+    std::span<const std::uint32_t> band(int index) const {
+        const auto b = static_cast<std::size_t>(index);
+        return std::span(numbers_).subspan(bandEnds_[b], bandEnds_[b + 1] - bandEnds_[b]);
     }
+    const Splat& operator[](std::uint32_t number) const { return splats_[number]; }
 
 private:
+    /// Of the bands that the rows, of the film's, belong to.
+    template <class Visit>
+    void forEachBand(int firstRow, int lastRow, const Visit& visit) const;
+
     FrameWindow window_;
     float radius_;
-    std::vector<std::vector<Splat>> bands_;
+    std::vector<Splat> splats_;
+    std::vector<std::uint32_t> numbers_;  // band after band
+    /// [b + 1]: while splats are added, how many reach band b; then, where its numbers end.
+    std::vector<std::uint32_t> bandEnds_;
 };
 
-/// Adds the splats of all parts to the film, and to `images` if there are any: sample by sample,
-/// within a sample part by part. Each list holds its samples in rising order, from `firstSample`
-/// on.
-void addSplats(const std::vector<SplatList>& parts, const Filter& filter, std::uint32_t firstSample,
-               std::uint32_t sampleCount, int threads, Film& film, TechniqueImages* images);
+/// Adds the splats of all lists to the film, and to `images` if there are any, one after another.
+void addSplats(std::span<const SplatList> lists, const Filter& filter, int threads, Film& film,
+               TechniqueImages* images);
 
 }  // namespace etendue

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "renderer/frame.h"
+#include "renderer/lanes.h"
 #include "renderer/vec.h"
 
 namespace etendue {
@@ -37,13 +38,20 @@ struct SurfacePoint {
     int light = -1;  // index of the light this triangle belongs to, or -1
 };
 
-/// The float next to `x` on the side of `direction`'s sign; denormals count as zero.
-/// (std::nextafter is a library call, and this is needed six times a bounce.)
-inline float nextFloat(float x, float direction) {
+/// For each lane of `by` that is not zero: the float after x + by on the side of by's sign;
+/// denormals count as zero. (std::nextafter is a library call, and this is needed twice a bounce.)
+inline FloatLanes movedPast(FloatLanes x, FloatLanes by) {
+    constexpr std::int32_t signBit = std::numeric_limits<std::int32_t>::min();
     constexpr float smallest = std::numeric_limits<float>::min();
-    if (std::abs(x) < smallest) return std::copysign(smallest, direction);
-    const std::uint32_t bits = std::bit_cast<std::uint32_t>(x);
-    return std::bit_cast<float>((x < 0.0f) == (direction < 0.0f) ? bits + 1 : bits - 1);
+    const FloatLanes sum = x + by;
+    const auto bits = std::bit_cast<IntLanes>(sum), sign = std::bit_cast<IntLanes>(by) & signBit;
+    // Of the sign's side if the bits grow: away from zero.
+    const IntLanes isOutward = ((bits ^ sign) >= 0) & 1;
+    const IntLanes next = bits + 2 * isOutward - 1;
+    const IntLanes nearZero = sign | std::bit_cast<std::int32_t>(smallest);
+    const IntLanes isNearZero = (sum > -smallest) & (sum < smallest);
+    const auto moved = std::bit_cast<FloatLanes>(isNearZero ? nearZero : next);
+    return by == 0.0f ? x : moved;
 }
 
 /// Where a ray leaving `point` along `direction` (not necessarily unit) starts, so that it cannot
@@ -52,10 +60,8 @@ inline float nextFloat(float x, float direction) {
 inline Vec3 offsetOrigin(const SurfacePoint& point, Vec3 direction) {
     const Vec3 n =
         dot(direction, point.geometricNormal) < 0 ? -point.geometricNormal : point.geometricNormal;
-    const Vec3 offset = n * dot(abs(n), point.positionError);
-    const auto away = [](float p, float d) { return d == 0.0f ? p : nextFloat(p + d, d); };
-    return {away(point.position.x, offset.x), away(point.position.y, offset.y),
-            away(point.position.z, offset.z)};
+    const float distance = dot(abs(n), point.positionError);
+    return vecOf(movedPast(lanesOf(point.position), lanesOf(n) * distance));
 }
 
 }  // namespace etendue

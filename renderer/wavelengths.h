@@ -29,6 +29,9 @@ struct Wavelengths {
     }
 };
 
+/// Those of any RGB scene.
+inline const Wavelengths rgbWavelengths{};
+
 /// The wavelengths of one sample of a picture, and how the film sees them.
 struct SpectralSample {
     Wavelengths wavelengths;

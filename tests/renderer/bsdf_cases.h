@@ -69,7 +69,7 @@ inline Vec3 atCosine(float cosine) {
     return {0.8f * sine, -0.6f * sine, cosine};
 }
 
-inline BsdfContext withTransport(Transport transport) { return {{0.5f, 0.5f}, transport, {}}; }
+inline BsdfContext withTransport(Transport transport) { return {{0.5f, 0.5f}, transport}; }
 
 inline std::optional<BsdfSample> drawSample(const BsdfCase& c, Transport transport, Vec3 wo,
                                             RandomStream& random) {

@@ -104,12 +104,13 @@ TEST_CASE("Render: …and for any division into passes") {
                         Spectrum sum;
                         for (const Contribution& c : sample.contributions)
                             if (c.isSplat)
-                                splats[0].add(s, c);
+                                splats[0].add(c);
                             else
                                 sum += c.value * c.weight;
                         film.add(x, y, sum);
                     }
-                addSplats(splats, filter, s, 1, 1, film, nullptr);
+                splats[0].sortByBand();
+                addSplats(splats, filter, 1, film, nullptr);
             }
     film.addSamples(6);
     film.addLightPaths(6 * 48 * 32);

@@ -6,6 +6,7 @@
 
 #include "lens/connection.h"
 #include "lens/fitted_map.h"
+#include "lens/polynomial_products.h"
 #include "lens/target_solver.h"
 
 namespace etendue {
@@ -55,10 +56,10 @@ private:
     FittedMap map_;
     FitDomain domain_;
     Aperture aperture_;
-    PolynomialEvaluator<double> clip_;
+    ValueEvaluator clip_;
     std::size_t clipCount_;
     EntrancePupil pupil_;
-    PolynomialEvaluator<double> start_;  // connectStart_.sensor
+    ValueEvaluator start_;  // connectStart_.sensor
     ConnectStart connectStart_;
     double focalLengthMm_;
 };

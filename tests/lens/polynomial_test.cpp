@@ -8,6 +8,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "lens/polynomial_products.h"
 #include "tests/lens/fitted_lenses.h"
 
 namespace etendue {
@@ -173,6 +174,24 @@ TEST_CASE("PolynomialEvaluator: as many vectors and scalars as there may be are 
     CHECK_THROWS_AS(PolynomialEvaluator<double>{tooMany}, std::invalid_argument);
     tooMany.outputs = {mostVectors + 1, 0};
     CHECK_THROWS_AS(PolynomialEvaluator<double>{tooMany}, std::invalid_argument);
+}
+
+TEST_CASE("ValueEvaluator: the values are those of the terms added up one by one") {
+    for (const PolynomialBasis basis : allBases)
+        for (const OutputCount outputs : {OutputCount{0, 1}, OutputCount{0, 10}, OutputCount{1, 0},
+                                          OutputCount{1, 8}, OutputCount{2, 1}})
+            for (const double coupling : {0.0, 0.3}) {
+                SparsePolynomial polynomial = somePolynomial(basis, outputs, 11);
+                polynomial.scaling.coupling = {coupling, -coupling};
+                const ValueEvaluator evaluator(polynomial);
+                for (const PolynomialInput& input : someInputs(10)) {
+                    const Eigen::VectorXd expected = evaluateNaively(polynomial, input);
+                    const PolynomialValues<double> values = evaluator.values(input);
+                    const double bound = 0x1p-52 * 220.0 * sizeOf(polynomial, input);
+                    for (int o = 0; o < outputs.total(); ++o)
+                        CHECK(std::abs(values[static_cast<std::size_t>(o)] - expected[o]) <= bound);
+                }
+            }
 }
 
 /// T and how many side by side.

@@ -16,8 +16,8 @@ namespace etendue {
 struct FitImageError {
     double relMse = 0.0;
     Interval interval;
-    double noiseOfOneSample = 0.0;  // relMSE of `pt` with one sample per pixel, by the spread of
-                                    // the exact pictures
+    double noiseOfOneSample = 0.0;  // trimmed relMSE of `pt` with one sample per pixel, by the
+                                    // spread of the exact pictures
 };
 
 struct FitErrorSettings {
@@ -34,7 +34,8 @@ std::optional<std::vector<Picture>> fitErrorPictures(const LoadedScene& loaded,
 /// Of such pictures through the exact trace and through the fit, with the same settings and hence
 /// the same random numbers: most of the noise cancels in the difference d of two with one seed.
 /// What differences of two seeds i and j share is the fit's doing, so that the mean over pixels and
-/// pairs i ≠ j of d_i d_j / (r² + 0.01) has no noise in the mean; r is the mean of `exact`.
+/// pairs i ≠ j of d_i d_j / (r² + 0.01) has no noise in the mean; r is the mean of `exact`. The
+/// 0.1 % of values that differ most are left out, as in relMseTrimmed.
 FitImageError fitImageError(const std::vector<Picture>& exact, const std::vector<Picture>& fitted,
                             const FitErrorSettings& settings);
 

@@ -36,7 +36,7 @@ struct Bench {
         folder.write("scenes/ball/scene.toml", boxScene);
         folder.write("scenes/suites/suite.toml",
                      "[suite]\ntitle = \"A <ball>\"\nwidth = 8\nheight = 6\nseeds = 2\nseconds = "
-                     "0.005\nmost_samples = 8\nreference_seconds = 0.01\n[[group]]\nscenes = "
+                     "10\nmost_samples = 8\nreference_seconds = 0.01\n[[group]]\nscenes = "
                      "\"ball\"\nestimators = [\"pt\", \"bdpt\"]\n");
     }
     Outcome run(const std::string& more = "") const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -54,9 +55,21 @@ void parallelFor(std::size_t count, int threads, const std::function<void(std::s
     if (failure) std::rethrow_exception(failure);
 }
 #else
+namespace {
+
+/// One for each count of threads, for good: TBB gives back little of the memory of one that ends
+/// (7 KB each), and a render has thousands of loops.
+tbb::task_arena& arenaOf(int threads) {
+    static std::mutex mutex;
+    static std::map<int, tbb::task_arena> arenas;
+    const std::lock_guard lock(mutex);
+    return arenas.try_emplace(threads, threads).first->second;
+}
+
+}  // namespace
+
 void parallelFor(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
-    tbb::task_arena arena(threads);
-    arena.execute([&] {
+    arenaOf(threads).execute([&] {
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, count, 1),
             [&](const tbb::blocked_range<std::size_t>& range) {

@@ -84,6 +84,40 @@ TEST_CASE("Render: the same bits with 1, 2 and 8 threads") {
     }
 }
 
+/// Splats anywhere what differs so much in size that any other order of adding has another sum.
+class WildSplats final : public Estimator {
+public:
+    void takeSample(const View&, SampleId id, SampleRequest, Sample& result) const override {
+        result.contributions.clear();
+        RandomStream random(id.seed, static_cast<std::uint32_t>(id.y * 96 + id.x), id.sample,
+                            RandomDomain::test);
+        const Vec2 film = random.next2();
+        const float size = std::exp2(60.0f * random.next() - 30.0f) * (1.0f + random.next());
+        result.contributions.push_back({.technique = {2, 1},
+                                        .value = Spectrum(size),
+                                        .film = {96.0f * film.x, 64.0f * film.y},
+                                        .isSplat = true});
+    }
+    int lightPathsPerSample() const override { return 1; }
+};
+
+TEST_CASE("Render: …whether the frame has more parts than are splatted at a time, or fewer") {
+    // 96 parts: one thread takes 48 at a time, two all of one sample, sixteen those of ten samples.
+    const LoadedScene loaded = sceneFromText(mixedScene, {"film.width=96", "film.height=64"});
+    const Filter filter(FilterKind::box);
+    const auto splats = [&](int threads) {
+        Film film({96, 64, 0, 0, 96, 64});
+        RenderSettings settings;
+        settings.samples = 40;
+        settings.threads = threads;
+        render(*loaded.scene, *loaded.camera, WildSplats(), filter, film, settings, {});
+        return film.state().splatSums;
+    };
+    const std::vector<double> one = splats(1);
+    CHECK(splats(2) == one);
+    CHECK(splats(16) == one);
+}
+
 TEST_CASE("Render: …and for any division into passes") {
     const LoadedScene loaded = sceneFromText(mixedScene, {"estimator.kind=bdpt"});
     const std::vector<float> whole = renderPixels(loaded, 6, 3);

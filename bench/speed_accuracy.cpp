@@ -105,22 +105,22 @@ std::string worthTable(const Results& terms) {
     return text;
 }
 
-/// (relMSE of the picture − τ² …) against the square of the shift: what representation = "auto"
-/// rests on.
-std::string gradientTable(const Results& terms, double width) {
+/// What representation = "auto" rests on: relMSE over the square of the shift, of 8 terms, whose
+/// shift dominates.
+std::string gradientTable(const Results& terms) {
     static const std::map<std::string, double> sensorMm{
         {"double-gauss", 36.0}, {"fisheye", 23.5}, {"fisheye-181", 23.5}, {"anamorphic", 22.0}};
     std::string text =
-        "| scene | camera | pixels that 8 terms shift the picture by, rms | relMSE / pixels² |\n"
+        "| scene | camera | shift / width of the picture, rms | relMSE / (shift / width)² |\n"
         "|---|---|---:|---:|\n";
     for (const BenchFitError& e : terms.records.fitErrors) {
         const BenchLens* lens = terms.lens(e.camera, e.variant);
         if (!lens || !lens->terms || *lens->terms != 8.0 || !sensorMm.contains(e.camera)) continue;
-        const double shift = 1e-3 * *lens->fitErrorMicrometres * width / sensorMm.at(e.camera);
-        text +=
-            fmt::format("| {} | {} | {:.2g} | {} |\n", e.scene, e.camera, shift,
-                        e.low > 0.0 ? rangeText(e.low / (shift * shift), e.high / (shift * shift))
-                                    : fmt::format("< {:.2g}", e.high / (shift * shift)));
+        const double shift = 1e-3 * *lens->fitErrorMicrometres / sensorMm.at(e.camera);
+        const double square = shift * shift;
+        text += fmt::format("| {} | {} | {:.1e} | {} |\n", e.scene, e.camera, shift,
+                            e.low > 0.0 ? rangeText(e.low / square, e.high / square)
+                                        : fmt::format("< {:.2g}", e.high / square));
     }
     return text;
 }
@@ -220,7 +220,7 @@ void run(const std::filesystem::path& file, const std::array<std::filesystem::pa
     fill(document, "machine", machineText(estimators));
     fill(document, "fits", fitTable(terms));
     fill(document, "worth", worthTable(terms));
-    fill(document, "gradients", gradientTable(terms, 960.0));
+    fill(document, "gradients", gradientTable(terms));
     fill(document, "speed", speedTable(lenses));
     fill(document, "estimators", estimatorTable(estimators));
     fill(document, "dispersion", dispersionTable(lenses));

@@ -134,7 +134,7 @@ std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, CameraSettin
     };
     LensFit fit;
     if (representation == "auto") {
-        ChosenFit chosen = chooseTerms(fitOf, camera.sensorWidthMm / camera.width, loaded.samples);
+        ChosenFit chosen = chooseTerms(fitOf, camera.sensorWidthMm, loaded.samples);
         fit = std::move(chosen.fit);
         loading.notes.push_back(std::move(chosen.reason));
     } else {

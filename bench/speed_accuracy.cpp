@@ -178,19 +178,14 @@ std::string estimatorTable(const Results& estimators) {
 /// Errors of both at equal time against the picture with dispersion.
 std::string dispersionTable(const Results& lenses) {
     std::string text =
-        "| camera | estimator | relMSE with dispersion | without | of which stays with any number "
-        "of "
-        "samples |\n|---|---|---:|---:|---|\n";
-    for (const BenchFitError& e : lenses.records.fitErrors) {
-        if (e.variant != "no dispersion") continue;
-        for (const char* estimator : {"pt", "lt", "bdpt"}) {
-            const BenchResult* with = lenses.find({e.scene, e.camera, "dispersion", estimator});
-            const BenchResult* without =
-                lenses.find({e.scene, e.camera, "no dispersion", estimator});
-            if (!with || !without) continue;
-            text += fmt::format("| {} | {} | {:.2g} | {:.2g} | {} |\n", e.camera, estimator,
-                                with->relMse.value, without->relMse.value, errorText(e));
-        }
+        "| camera | estimator | relMSE with dispersion | without |\n|---|---|---:|---:|\n";
+    for (const BenchResult& with : lenses.results) {
+        BenchConfiguration c = with.configuration;
+        if (c.variant != "dispersion") continue;
+        c.variant = "no dispersion";
+        if (const BenchResult* without = lenses.find(c))
+            text += fmt::format("| {} | {} | {:.2g} | {:.2g} |\n", c.camera, c.estimator,
+                                with.relMse.value, without->relMse.value);
     }
     return text;
 }

@@ -134,7 +134,8 @@ void addRegress(CLI::App& bench, Chosen& chosen) {
         ->add_option("--samples", c.samples,
                      "Per pixel of each picture; default: as the baseline says, or 16; of a "
                      "reference 64")
-        ->check(CLI::Range(2, 1 << 20).description(""))
+        ->check(numberThat<int>([](int n) { return n >= 16 && n <= 1 << 20 && n % 16 == 0; },
+                                "a multiple of 16"))
         ->type_name("N");
     addSeed(regress, c.firstSeed);
     addThreads(regress, c.threads);

@@ -24,7 +24,8 @@ BaselineRow rowIn(const ConfigTable& table) {
     BaselineRow row;
     row.cell = {table.text("scene"), table.text("camera"),
                 table.choice("estimator", estimatorKinds())};
-    row.samples = static_cast<std::uint32_t>(table.integer("samples", {2, 1 << 20}));
+    row.samples = static_cast<std::uint32_t>(table.integer("samples", {16, 1 << 20}));
+    if (row.samples % 16 != 0) table.fail("samples", "expected a multiple of 16");
     if (table.has("bias_bound"))
         row.biasBound = table.number("bias_bound", {1e-6, 1000.0}) / perCent;
     row.judgesRate = table.boolean("rate", true);

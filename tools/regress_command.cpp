@@ -184,12 +184,11 @@ private:
         const HeldAgainst held = holdAgainst(*rendered, result.samples, picture, regions);
         if (row) result.biasBound = row->biasBound;
         result.bias = judgeBias(held, result.biasBound, testCount(regions));
-        const auto errors = errorsBySeed(*rendered, picture);
-        const std::vector<double> samples(settings.checkpoints.begin(), settings.checkpoints.end());
-        result.slope = convergenceSlope(samples, errors);
+        const BlockErrors errors = blockErrors(*rendered, result.samples, picture);
+        result.slope = convergenceSlope(errors.samples, errors.errorsOf);
         result.rate = judgeRate(result.slope, cellCount(), seedCount);
         result.judgesRate = row && row->judgesRate;
-        result.noise = noiseOf(errors, result.samples);
+        result.noise = noiseOf(errors);
         if (!row) return held;
         result.noiseBefore = {row->noise, row->interval};
         result.noiseVerdict = judgeNoise(*result.noiseBefore, result.noise, cellCount(), seedCount);

@@ -67,26 +67,37 @@ BiasJudgement judgeBias(const HeldAgainst& tested, std::optional<double> bound, 
 /// The relative bias is that of `a` over `b`.
 BiasJudgement judgeBetween(const HeldAgainst& a, const HeldAgainst& b, std::size_t tests);
 
-/// relMSE against the reference less that picture's own, [seed][checkpoint].
-std::vector<std::vector<double>> errorsBySeed(const SeedPictures& rendered,
-                                              const ReferencePicture& reference);
+/// Errors of blocks of samples, each block by itself.
+struct BlockErrors {
+    std::vector<double> samples;                // per pixel of each block, doubling
+    std::vector<std::vector<double>> errorsOf;  // [seed][step]: mean over the seed's blocks
+};
+/// Of pictures at checkpoints that are evenly spaced, a power of two of them: relMSE against the
+/// reference less that picture's own. Every sample is in one block of each size, so that one bright
+/// sample raises all errors of its seed alike, and leaves their slope as it is.
+BlockErrors blockErrors(const SeedPictures& rendered, std::uint32_t samples,
+                        const ReferencePicture& reference);
 
 /// relMSE × samples, and its interval of 99 % over the seeds.
 struct Noise {
     double value = 0.0;
     Interval interval;
 };
-Noise noiseOf(const std::vector<std::vector<double>>& errors, std::uint32_t samples);
+/// From the largest blocks.
+Noise noiseOf(const BlockErrors& errors);
 
-/// As `slope.verdict` says, but that it fails only where chance brings that about in 1 % of runs of
-/// so many cells: the interval is widened to that level.
+/// As `slope.verdict` says, but that it fails only if no slope within 0.01 of −1 lies in its
+/// interval, and that widened to the level at which chance makes a cell fail in 1 % of runs of so
+/// many cells.
 SlopeVerdict judgeRate(const ConvergenceSlope& slope, std::size_t cells, int seeds);
 
 enum class NoiseVerdict { same, worse, better };
 /// Whether two intervals can be those of one noise. `cells`: as `tests`; `seeds`: of each.
 NoiseVerdict judgeNoise(const Noise& before, const Noise& now, std::size_t cells, int seeds);
 
-/// 1, 2, 4 … samples: at most seven in all.
+/// A render of a cell is looked at so many times; its samples are a multiple of that.
+inline constexpr std::uint32_t checkpointCount = 16;
+/// Of `samples` per pixel, evenly spaced.
 std::vector<std::uint32_t> checkpointsUpTo(std::uint32_t samples);
 
 /// The smallest of 0.5, 1, 2, 5 … 50 % that leaves chance some room; none if noise hides more.

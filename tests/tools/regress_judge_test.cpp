@@ -39,6 +39,30 @@ HeldAgainst held(double factor, double noise = 0.05) {
             regionMeansOf(pictures(16, 2, 0.02))};
 }
 
+/// Eight samples of each seed around brightness 1, as a film holds them; three seeds have met a
+/// bright one. `isShared`: two samples are one each time.
+SeedPictures progressive(std::uint32_t seeds, double noise, double brightness,
+                         bool isShared = false) {
+    SeedPictures result;
+    result.pictures.resize(8);
+    for (std::uint32_t seed = 0; seed < seeds; ++seed) {
+        std::vector<Picture> samples = pictures(8, 100 + seed, noise);
+        if (isShared)
+            for (std::size_t i = 0; i < 8; i += 2) samples[i + 1] = samples[i];
+        if (seed < 3) samples[2 + seed][300 * seed] += static_cast<float>(brightness);
+        std::vector<double> sums(samples[0].size());
+        for (std::size_t n = 0; n < samples.size(); ++n) {
+            Picture mean;
+            for (std::size_t i = 0; i < sums.size(); ++i) {
+                sums[i] += static_cast<double>(samples[n][i]);
+                mean.push_back(static_cast<float>(sums[i] / static_cast<double>(n + 1)));
+            }
+            result.pictures[n].push_back(mean);
+        }
+    }
+    return result;
+}
+
 Noise noise(double value, double relativeHalfWidth) {
     return {value, {value / (1.0 + relativeHalfWidth), value * (1.0 + relativeHalfWidth)}};
 }
@@ -114,23 +138,44 @@ TEST_CASE("Regress judge: two estimators are compared by what each is beside its
 }
 
 TEST_CASE("Regress judge: errors are those of the picture, without the reference's own") {
-    // Around brightness 1 relMSE is the variance over 1.01; of two checkpoints the second has half.
+    // Around brightness 1 relMSE is the variance over 1.01.
     const double variance = 0.01;
-    SeedPictures rendered;
-    rendered.pictures = {pictures(32, 1, std::sqrt(variance)),
-                         pictures(32, 5, std::sqrt(variance / 2))};
+    const SeedPictures rendered = progressive(8, std::sqrt(variance), 0.0);
     ReferencePicture reference;
-    reference.pixels = pictures(1, 2, 0.1)[0];  // as noisy as what it judges
+    reference.pixels = pictures(1, 2, 0.1)[0];  // as noisy as one sample of what it judges
     reference.noise = variance / 1.01;
-    const auto errors = errorsBySeed(rendered, reference);
-    REQUIRE(errors.size() == 32);
-    const Noise first = noiseOf({errors.begin(), errors.end()}, 2);
-    // The reference's noise is what it is expected to be but for √(2 / 1536) of it, 3.6 %; that of
-    // the pictures for 0.6 %. relMSE at its pixels is that at 1 but for the curvature: 3 · 0.01.
-    CHECK(first.value == doctest::Approx(2 * variance / 2 / 1.01).epsilon(0.35));
-    CHECK(first.interval.contains(first.value));
-    CHECK(errors[0].size() == 2);
-    CHECK(errors[0][0] > errors[0][1]);
+    const BlockErrors errors = blockErrors(rendered, 32, reference);
+    CHECK(errors.samples == std::vector<double>{4, 8, 16, 32});
+    REQUIRE(errors.errorsOf.size() == 8);
+    REQUIRE(errors.errorsOf[0].size() == 4);
+    // The variance of one sample's mean is known to √(2 / (64 · 1536)), 0.5 %. The reference's
+    // noise is what it is expected to be but for √(2 / 1536), 3.6 %, and relMSE at its pixels is
+    // that at 1 but for the curvature, 3 · 0.01.
+    double first = 0.0;
+    for (const auto& of : errors.errorsOf) first += of[0] / 8.0;
+    CHECK(first == doctest::Approx(variance / 1.01).epsilon(0.15));
+    const Noise noise = noiseOf(errors);
+    CHECK(noise.interval.contains(noise.value));
+    // At eight samples the reference's share is eight times as large beside the picture's.
+    CHECK(noise.value == doctest::Approx(32 * variance / 8.0 / 1.01).epsilon(0.7));
+}
+
+TEST_CASE("Regress judge: the slope is −1 though a few samples are bright") {
+    ReferencePicture reference;
+    reference.pixels = Picture(3 * 32 * 16, 1.0f);
+    const auto slopeOf = [&](double brightness, bool isShared) {
+        const BlockErrors errors =
+            blockErrors(progressive(32, 0.1, brightness, isShared), 16, reference);
+        return convergenceSlope(errors.samples, errors.errorsOf, 1000);
+    };
+    const ConvergenceSlope even = slopeOf(0.0, false), bright = slopeOf(300.0, false);
+    CHECK(even.verdict == SlopeVerdict::pass);
+    // One sample in each of three seeds is most of all of the noise.
+    CHECK(bright.verdict == SlopeVerdict::pass);
+    CHECK(bright.interval.width() < 0.03);
+    // Pairs of samples that are one: the first octave gains nothing.
+    CHECK(slopeOf(0.0, true).verdict == SlopeVerdict::fail);
+    CHECK(slopeOf(0.0, true).slope > -0.95);
 }
 
 TEST_CASE("Regress judge: noise is told from noise by both intervals") {
@@ -158,16 +203,20 @@ TEST_CASE("Regress judge: a slope is wrong by the level of all cells") {
     };
     // Student's t of 31 is 2.74 at 99 %, 4.4 at a level of 0.01 / 100: 1.6 times as wide.
     CHECK(verdict(-0.98, 0.03, 100) == SlopeVerdict::pass);
-    CHECK(verdict(-0.96, 0.03, 1) == SlopeVerdict::fail);
-    CHECK(verdict(-0.96, 0.03, 100) == SlopeVerdict::pass);
-    CHECK(verdict(-0.95, 0.03, 100) == SlopeVerdict::fail);
-    CHECK(verdict(-1.05, 0.03, 100) == SlopeVerdict::fail);
+    CHECK(verdict(-0.95, 0.03, 1) == SlopeVerdict::fail);
+    CHECK(verdict(-0.95, 0.03, 100) == SlopeVerdict::pass);
+    CHECK(verdict(-0.94, 0.03, 100) == SlopeVerdict::fail);
+    CHECK(verdict(-1.06, 0.03, 100) == SlopeVerdict::fail);
+    // However narrow, a slope that is as good as −1 is not wrong.
+    CHECK(verdict(-1.009, 0.0001, 1) == SlopeVerdict::pass);
+    CHECK(verdict(-1.011, 0.0001, 1) == SlopeVerdict::fail);
     CHECK(verdict(-1.0, 0.06, 100) == SlopeVerdict::inconclusive);
     CHECK(verdict(-0.5, 0.06, 100) == SlopeVerdict::inconclusive);
 }
 
-TEST_CASE("Regress judge: checkpoints are octaves, seven at most") {
-    CHECK(checkpointsUpTo(16) == std::vector<std::uint32_t>{1, 2, 4, 8, 16});
-    CHECK(checkpointsUpTo(256) == std::vector<std::uint32_t>{4, 8, 16, 32, 64, 128, 256});
-    CHECK(checkpointsUpTo(2) == std::vector<std::uint32_t>{1, 2});
+TEST_CASE("Regress judge: checkpoints are sixteen, evenly spaced") {
+    CHECK(checkpointsUpTo(16) ==
+          std::vector<std::uint32_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16});
+    CHECK(checkpointsUpTo(64).front() == 4);
+    CHECK(checkpointsUpTo(64).back() == 64);
 }

@@ -1,7 +1,6 @@
 #include "bench/embree_probe.h"
 
 #include <embree3/rtcore.h>
-#include <time.h>
 
 #include <chrono>
 #include <vector>
@@ -42,12 +41,6 @@ void probeEmbree(EmbreeProbe probe) {
 }
 
 EmbreeUse embreeUse() { return use; }
-
-double threadSeconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 TimingCost embreeTimingCost() {
     constexpr int count = 1000000;

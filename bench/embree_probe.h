@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "lens/thread_time.h"
+
 namespace etendue {
 
 enum class EmbreeProbe {
@@ -35,8 +37,5 @@ TimingCost embreeTimingCost();
 /// Asks Embree the recorded queries again, in their order and nothing between them: what rays cost
 /// if a renderer were nothing else. Nanoseconds of this thread's processor time per query.
 double replayNanosecondsPerQuery();
-
-/// Of this thread, on a processor: whatever else the machine is doing.
-double threadSeconds();
 
 }  // namespace etendue

@@ -3,7 +3,6 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +18,7 @@
 #include "lens/fit_domain.h"
 #include "lens/polynomial.h"
 #include "lens/polynomial_lens.h"
+#include "lens/thread_time.h"
 #include "lens/traced_lens.h"
 
 namespace etendue {
@@ -40,13 +40,6 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// Of this thread: a long turn would be interrupted on a busy machine.
-double threadNanoseconds() {
-    timespec now{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-}
-
 /// All take turns, so that what else the machine does falls on all alike. A turn begins untimed:
 /// caches, predictions and wide registers, which sleep when unused, are as in the midst of work.
 void race(std::vector<Contestant>& contestants) {
@@ -54,9 +47,9 @@ void race(std::vector<Contestant>& contestants) {
     for (int round = 0; round < rounds; ++round)
         for (Contestant& contestant : contestants) {
             contestant.run();
-            const double start = threadNanoseconds();
+            const double start = threadSeconds();
             contestant.run();
-            contestant.nanoseconds.push_back((threadNanoseconds() - start) /
+            contestant.nanoseconds.push_back(1e9 * (threadSeconds() - start) /
                                              static_cast<double>(contestant.count));
         }
 }

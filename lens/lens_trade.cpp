@@ -6,6 +6,7 @@
 #include "lens/connect_survey.h"
 #include "lens/polynomial.h"
 #include "lens/polynomial_lens.h"
+#include "lens/thread_time.h"
 
 namespace etendue {
 
@@ -15,24 +16,6 @@ using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Of one call of `body`, which is called for every query: the median over several runs.
-template <class Query, class Body>
-double nanosecondsPer(const std::vector<Query>& queries, const Body& body) {
-    constexpr int runs = 9;
-    if (queries.empty()) return 0.0;
-    std::array<double, runs> times;
-    [[maybe_unused]] volatile double sink = 0.0;  // lest the calls be left out
-    for (double& time : times) {
-        double sum = 0.0;
-        const Clock::time_point start = Clock::now();
-        for (const Query& query : queries) sum += body(query);
-        time = secondsSince(start);
-        sink = sum;
-    }
-    std::ranges::nth_element(times, times.begin() + runs / 2);
-    return 1e9 * times[runs / 2] / static_cast<double>(queries.size());
 }
 
 /// A ray that the fitted lens traces, and a point on it.

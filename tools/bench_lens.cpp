@@ -1,39 +1,13 @@
 #include "tools/bench_lens.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <ctime>
 
+#include "lens/thread_time.h"
 #include "renderer/random.h"
 
 namespace etendue {
 
 namespace {
-
-/// Of this thread's own, which others on the machine do not add to.
-double threadSeconds() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-/// Of one call of `body`, called for 0 … `count` − 1: the median over several runs.
-template <class Body>
-double nanosecondsPer(std::size_t count, const Body& body) {
-    constexpr std::size_t runs = 9;
-    std::array<double, runs> times;
-    [[maybe_unused]] volatile float sink = 0.0f;  // lest the calls be left out
-    for (double& time : times) {
-        float sum = 0.0f;
-        const double start = threadSeconds();
-        for (std::size_t i = 0; i < count; ++i) sum += body(i);
-        time = threadSeconds() - start;
-        sink = sum;
-    }
-    std::nth_element(times.begin(), times.begin() + runs / 2, times.end());
-    return count > 0 ? 1e9 * times[runs / 2] / static_cast<double>(count) : 0.0;
-}
 
 struct Query {
     Vec2 film, aperture;
@@ -73,14 +47,12 @@ BenchLens measureLens(const LoadedScene& loaded) {
     }
     const std::vector<Query> queries = queriesOf(loaded);
     const Camera& camera = *loaded.camera;
-    lens.rayNs = nanosecondsPer(queries.size(), [&](std::size_t i) {
-        const auto ray =
-            camera.sampleRay(queries[i].film, queries[i].aperture, queries[i].wavelengths);
+    lens.rayNs = nanosecondsPer(queries, [&](const Query& query) {
+        const auto ray = camera.sampleRay(query.film, query.aperture, query.wavelengths);
         return ray ? ray->weight : 0.0f;
     });
-    lens.connectNs = nanosecondsPer(queries.size(), [&](std::size_t i) {
-        const auto connection =
-            camera.connect(queries[i].target, queries[i].aperture, queries[i].wavelengths);
+    lens.connectNs = nanosecondsPer(queries, [&](const Query& query) {
+        const auto connection = camera.connect(query.target, query.aperture, query.wavelengths);
         return connection ? connection->distance : 0.0f;
     });
     return lens;

@@ -24,17 +24,13 @@ inline LoadedScene loadForBench(const std::filesystem::path& file, int width, in
     return loadScene(file, {std::move(overrides), 2, fitCacheDirectory()});
 }
 
-inline FrameWindow frameOf(const LoadedScene& loaded) {
-    return {loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height};
-}
-
 inline Filter filterOf(const LoadedScene& loaded) {
     return Filter(loaded.film.filter, loaded.film.filterRadius);
 }
 
 inline RenderResult renderForBench(const LoadedScene& loaded, const std::string& kind,
                                    std::uint32_t samples, int threads) {
-    Film film(frameOf(loaded), {}, loaded.film.color);
+    Film film(loaded.film.fullFrame(), {}, loaded.film.color);
     RenderSettings settings;
     settings.samples = samples;
     settings.threads = threads;

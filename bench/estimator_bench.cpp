@@ -21,8 +21,7 @@ double median(std::vector<double> values) {
 }
 
 double secondsOf(const LoadedScene& loaded, const std::string& kind, std::uint32_t samples) {
-    Film film({loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height},
-              {}, loaded.film.color);
+    Film film(loaded.film.fullFrame(), {}, loaded.film.color);
     EstimatorSettings estimator = loaded.estimator;
     estimator.kind = kind;
     RenderSettings settings;

@@ -156,7 +156,7 @@ void benchSplatsOf(const LoadedScene& loaded, const char* name) {
         const WithoutSplats without(makeEstimator(settings));
         const Filter filter = filterOf(loaded);
         const auto nanoseconds = [&](const Estimator& estimator) {
-            Film film(frameOf(loaded), {}, loaded.film.color);
+            Film film(loaded.film.fullFrame(), {}, loaded.film.color);
             RenderSettings render;
             render.samples = 4;
             const double before = threadSeconds();

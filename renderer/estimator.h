@@ -27,6 +27,13 @@ struct EstimatorSettings {
     bool usesOuterPupil = false;   // of lt: CameraSettings::outerPupil
 };
 
+/// Another estimator under the same settings, by all of its techniques.
+inline EstimatorSettings withKind(EstimatorSettings settings, const std::string& kind) {
+    settings.kind = kind;
+    settings.techniques = {};
+    return settings;
+}
+
 /// What the samples are taken of.
 struct View {
     const Scene& scene;

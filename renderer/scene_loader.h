@@ -23,6 +23,8 @@ struct FilmSettings {
     FilterKind filter = FilterKind::box;
     float filterRadius = 0.5f;         // pixels
     FilmColor color = FilmColor::rgb;  // xyz: the render is spectral
+
+    FrameWindow fullFrame() const { return {width, height, 0, 0, width, height}; }
 };
 
 /// What a scene's lens was fitted by, and how well: rms on rays drawn anew (FitErrors).

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include "statistics/flip_filters.h"
@@ -224,6 +225,11 @@ std::vector<float> hdrFlip(const Picture& picture, const Picture& reference, int
                                [](float a, float b) { return std::max(a, b); });
     }
     return greatest;
+}
+
+double meanHdrFlip(const Picture& picture, const Picture& reference, int width) {
+    const std::vector<float> flip = hdrFlip(picture, reference, width);
+    return std::accumulate(flip.begin(), flip.end(), 0.0) / static_cast<double>(flip.size());
 }
 
 }  // namespace etendue

@@ -28,9 +28,10 @@ std::vector<float> ldrFlip(const Picture& picture, const Picture& reference, int
                            double pixelsPerDegree = flipPixelsPerDegree());
 
 /// HDR-FLIP (Andersson, Nilsson, Shirley and Akenine-Möller 2021) of each pixel: the greatest
-/// LDR-FLIP over the exposures. Linear RGB; std::invalid_argument for pictures of two sizes. The
-/// FLIP of a picture is the mean.
+/// LDR-FLIP over the exposures. Linear RGB; std::invalid_argument for pictures of two sizes.
 std::vector<float> hdrFlip(const Picture& picture, const Picture& reference, int width,
                            double pixelsPerDegree = flipPixelsPerDegree());
+/// The HDR-FLIP of a picture: the mean of its pixels'.
+double meanHdrFlip(const Picture& picture, const Picture& reference, int width);
 
 }  // namespace etendue

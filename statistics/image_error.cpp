@@ -12,9 +12,6 @@ namespace etendue {
 
 namespace {
 
-// Keeps black pixels of the reference from deciding alone.
-constexpr double relativeFloor = 0.01;
-
 void requireSameSize(const Picture& a, const Picture& b) {
     if (a.empty() || a.size() % 3 != 0 || a.size() != b.size())
         throw std::invalid_argument("pictures to compare must have one size");
@@ -27,7 +24,7 @@ std::vector<double> pixelErrors(const Picture& picture, const Picture& reference
     std::vector<double> errors(picture.size() / 3);
     for (std::size_t i = 0; i < picture.size(); ++i) {
         const double a = picture[i], r = reference[i];
-        errors[i / 3] += squared(a - r) / (squared(r) + relativeFloor) / 3.0;
+        errors[i / 3] += squared(a - r) / (squared(r) + relMseFloor) / 3.0;
     }
     return errors;
 }
@@ -71,6 +68,24 @@ std::vector<float> relativeSquaredErrors(const Picture& picture, const Picture& 
     const std::vector<double> errors = pixelErrors(picture, reference);
     std::vector<float> result(errors.size());
     std::ranges::transform(errors, result.begin(), [](double e) { return static_cast<float>(e); });
+    return result;
+}
+
+MeanPicture meanPicture(const std::vector<Picture>& independent) {
+    const auto count = static_cast<double>(independent.size());
+    MeanPicture result;
+    for (std::size_t i = 0; i < independent.front().size(); ++i) {
+        double sum = 0.0, squares = 0.0;
+        for (const Picture& picture : independent) sum += static_cast<double>(picture[i]);
+        const double mean = sum / count;
+        for (const Picture& picture : independent)
+            squares += squared(static_cast<double>(picture[i]) - mean);
+        const double variance = squares / (count * (count - 1.0));
+        result.pixels.push_back(static_cast<float>(mean));
+        result.variance.push_back(static_cast<float>(variance));
+        result.relMse += variance / (squared(mean) + relMseFloor);
+    }
+    result.relMse /= static_cast<double>(result.pixels.size());
     return result;
 }
 

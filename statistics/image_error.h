@@ -22,6 +22,18 @@ ImageErrors imageErrors(const Picture& picture, const Picture& reference);
 /// One value a pixel: the mean over its channels of (a − r)² / (r² + 0.01).
 std::vector<float> relativeSquaredErrors(const Picture& picture, const Picture& reference);
 
+/// Of the denominators r² + 0.01: keeps black pixels of the reference from deciding alone.
+inline constexpr double relMseFloor = 0.01;
+
+/// The mean of pictures that are independent and alike, and how far it can be trusted.
+struct MeanPicture {
+    Picture pixels;
+    Picture variance;     // of each of its values: the square of its standard error
+    double relMse = 0.0;  // expected of it, by its spread
+};
+/// Of at least two.
+MeanPicture meanPicture(const std::vector<Picture>& independent);
+
 /// bias², without the noise that every other error of a noisy picture keeps: the mean of
 /// (a₁ − r₁)(a₂ − r₂), whose expectation is that of (mean a − mean r)² where all four pictures are
 /// independent. It may come out negative.

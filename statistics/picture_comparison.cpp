@@ -3,38 +3,16 @@
 #include <algorithm>
 
 #include "statistics/statistics.h"
+#include "statistics/tiles.h"
 
 namespace etendue {
 
 namespace {
 
-/// Part of a picture, in one colour.
-struct Tile {
-    int x0, y0, x1, y1;
-    std::size_t color;
-    int pixels() const { return (x1 - x0) * (y1 - y0); }
-};
-
-std::vector<Tile> tilesOf(int width, int height, int tileSize) {
-    std::vector<Tile> tiles;
-    for (int y = 0; y < height; y += tileSize)
-        for (int x = 0; x < width; x += tileSize)
-            for (std::size_t color = 0; color < 3; ++color)
-                tiles.push_back(
-                    {x, y, std::min(x + tileSize, width), std::min(y + tileSize, height), color});
-    return tiles;
-}
-
 std::vector<double> meansIn(const Tile& tile, const std::vector<Picture>& pictures, int width) {
     std::vector<double> means;
-    for (const Picture& picture : pictures) {
-        double sum = 0.0;
-        for (int y = tile.y0; y < tile.y1; ++y)
-            for (int x = tile.x0; x < tile.x1; ++x)
-                sum += static_cast<double>(
-                    picture[3 * static_cast<std::size_t>(y * width + x) + tile.color]);
-        means.push_back(sum / tile.pixels());
-    }
+    for (const Picture& picture : pictures)
+        means.push_back(sumIn(tile, picture, width) / tile.pixels());
     return means;
 }
 

@@ -156,7 +156,7 @@ private:
     RenderResult renderOne(const Contestant& contestant, std::uint32_t samples, std::uint64_t seed,
                            std::size_t i, Pictures& pictures, double& largest) {
         const FilmSettings& frame = loaded_.film;
-        Film film({frame.width, frame.height, 0, 0, frame.width, frame.height}, {}, frame.color);
+        Film film(frame.fullFrame(), {}, frame.color);
         const std::unique_ptr<CommonPaths> estimator = contestant.make();
         RenderSettings settings;
         settings.samples = samples;

@@ -1,24 +1,26 @@
 #include "tools/agreement_judge.h"
 
 #include <algorithm>
-
-#include "statistics/statistics.h"
+#include <cmath>
 
 namespace etendue {
 
-double guardedP(std::span<const double> a, std::span<const double> b, double largestStepOfA,
-                double largestStepOfB) {
-    const WelchResult welch = welchTest(a, b);
+double guardedP(const WelchResult& welch, double step) {
     const double difference = std::abs(welch.difference);
-    const double step = welch.difference < 0.0 ? largestStepOfA : largestStepOfB;
     if (!(difference * step > 0.0)) return welch.pValue;
     // What has been missed comes in a Poisson number of steps; none is larger, so that none of
     // them makes a larger variance of the same mean.
     const double variance = welch.standardError * welch.standardError + difference * step;
-    const double least = static_cast<double>(std::min(a.size(), b.size())) - 1.0;
-    const double p =
-        studentTwoSidedP(difference / std::sqrt(variance), std::max(welch.degreesOfFreedom, least));
+    const double p = studentTwoSidedP(difference / std::sqrt(variance), welch.degreesOfFreedom);
     return std::max(p, welch.pValue);
+}
+
+double guardedP(std::span<const double> a, std::span<const double> b, double largestStepOfA,
+                double largestStepOfB) {
+    WelchResult welch = welchTest(a, b);
+    const double least = static_cast<double>(std::min(a.size(), b.size())) - 1.0;
+    welch.degreesOfFreedom = std::max(welch.degreesOfFreedom, least);
+    return guardedP(welch, welch.difference < 0.0 ? largestStepOfA : largestStepOfB);
 }
 
 Judgement judgePictures(const std::vector<Picture>& a, const std::vector<Picture>& b,

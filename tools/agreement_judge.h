@@ -5,6 +5,7 @@
 #include <span>
 
 #include "statistics/picture_comparison.h"
+#include "statistics/statistics.h"
 
 namespace etendue {
 
@@ -21,9 +22,11 @@ struct Judgement {
     std::size_t testsInDoubt = 0;
 };
 
-/// Two-sided p of equal means when the darker side may have missed samples that bring
-/// `largestStep` to its mean each: Welch's t with the variance that those have if the means are
-/// equal, added to what was seen. Never below Welch's own.
+/// Two-sided p of equal means when the darker side may have missed samples that bring `step` to its
+/// mean each: Welch's t with the variance that those have if the means are equal, added to what was
+/// seen. Never below Welch's own.
+double guardedP(const WelchResult& welch, double step);
+/// The same of two sides, whose brightest samples bring so much to their means.
 double guardedP(std::span<const double> a, std::span<const double> b, double largestStepOfA,
                 double largestStepOfB);
 

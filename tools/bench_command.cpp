@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "lens/fit_cache.h"
 #include "renderer/parallel.h"
 #include "tools/agreement_report.h"
 #include "tools/progress.h"
@@ -83,9 +82,10 @@ private:
     void compareThrough(const NamedFile& scene, const NamedFile& camera, JobBar& bar) {
         std::optional<LoadedScene> loaded;
         std::string failure;
-        const std::string title = fmt::format("{}, {}", scene.name, camera.name);
+        const ViewOptions view{command_.overrides, command_.size[0], command_.size[1],
+                               settings_.threads};
         try {
-            if (!isStopRequested()) loaded = load(scene, camera, title, bar);
+            if (!isStopRequested()) loaded = loadView(scene, camera, view, bar);
             if (loaded && loaded->camera->settings().outerPupil)
                 throw InputError("estimator.pupil_sampling = \"outer\" is not compared");
         } catch (const InputError& error) {
@@ -117,22 +117,6 @@ private:
                 bar.update(titleOf(row), std::min(1.0, seconds / settings_.seconds));
                 return !isStopRequested();
             });
-    }
-
-    LoadedScene load(const NamedFile& scene, const NamedFile& camera, const std::string& title,
-                     JobBar& bar) const {
-        LoadOptions options;
-        options.overrides = command_.overrides;
-        options.overrides.push_back(fmt::format("film.width={}", command_.size[0]));
-        options.overrides.push_back(fmt::format("film.height={}", command_.size[1]));
-        options.threads = settings_.threads;
-        options.fitCache = fitCacheDirectory();
-        options.fitProgress = [&](double, std::string_view stage) {
-            bar.update(fmt::format("{}: {}", title, stage), 0.0);
-        };
-        options.camera = camera.file;
-        options.disperses = camera.isDispersive;
-        return loadScene(scene.file, options);
     }
 
     const AgreementCommand& command_;

@@ -14,18 +14,15 @@ namespace {
 
 std::optional<Picture> pictureOf(const LoadedScene& loaded, const FitErrorSettings& settings,
                                  int seed, const std::function<bool()>& goOn) {
-    Film film({loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height},
-              {}, loaded.film.color);
-    EstimatorSettings estimator = loaded.estimator;
-    estimator.kind = "pt";
+    Film film(loaded.film.fullFrame(), {}, loaded.film.color);
     RenderSettings render;
     render.samples = settings.samples;
     render.seed = static_cast<std::uint64_t>(seed);
     render.threads = settings.threads;
-    const RenderResult result =
-        etendue::render(*loaded.scene, *loaded.camera, *makeEstimator(estimator),
-                        Filter(loaded.film.filter, loaded.film.filterRadius), film, render,
-                        [&](const RenderProgress&) { return goOn(); });
+    const RenderResult result = etendue::render(
+        *loaded.scene, *loaded.camera, *makeEstimator(withKind(loaded.estimator, "pt")),
+        Filter(loaded.film.filter, loaded.film.filterRadius), film, render,
+        [&](const RenderProgress&) { return goOn(); });
     if (result.wasInterrupted) return {};
     return film.channels().front().pixels;
 }
@@ -40,7 +37,7 @@ std::vector<bool> countingValues(const std::vector<Picture>& differences,
     std::vector<float> largest(reference.size());
     for (std::size_t p = 0; p < reference.size(); ++p) {
         for (const Picture& d : differences) largest[p] = std::max(largest[p], std::abs(d[p]));
-        largest[p] /= std::sqrt(reference[p] * reference[p] + 0.01f);
+        largest[p] /= std::sqrt(reference[p] * reference[p] + static_cast<float>(relMseFloor));
     }
     std::vector<float> sorted = largest;
     const auto kept = sorted.begin() +
@@ -64,7 +61,8 @@ Matrix productsOf(const std::vector<Picture>& differences, const Picture& refere
             for (std::size_t p = 0; p < reference.size(); ++p) {
                 if (!counts[p]) continue;
                 const double r = reference[p];
-                sum += static_cast<double>(differences[i][p]) * differences[j][p] / (r * r + 0.01);
+                sum += static_cast<double>(differences[i][p]) * differences[j][p] /
+                       (r * r + relMseFloor);
             }
             products[i][j] = products[j][i] = sum / all;
         }

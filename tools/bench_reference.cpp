@@ -18,7 +18,7 @@ constexpr int partCount = 16;
 /// Far from those of any benchmark, which count from zero.
 constexpr std::uint64_t firstSeed = 0x7265666572656e63;
 
-std::string keyOf(const LoadedScene& loaded, const ReferenceSettings& settings) {
+std::string keyOf(const LoadedScene& loaded, const BenchReferenceSettings& settings) {
     return contentHash(
         {}, {loaded.hash, version, settings.estimator,
              fmt::format("{} {} {}", settings.seconds, loaded.film.width, loaded.film.height),
@@ -28,17 +28,12 @@ std::string keyOf(const LoadedScene& loaded, const ReferenceSettings& settings) 
 /// The parts of a reference, each with a seed of its own.
 class Parts {
 public:
-    Parts(const LoadedScene& loaded, const ReferenceSettings& settings)
+    Parts(const LoadedScene& loaded, const BenchReferenceSettings& settings)
         : loaded_(loaded),
           filter_(loaded.film.filter, loaded.film.filterRadius),
           threads_(settings.threads) {
-        EstimatorSettings estimator = loaded.estimator;
-        estimator.kind = settings.estimator;
-        estimator.techniques = {};
-        estimator_ = makeEstimator(estimator);
-        const FrameWindow window{loaded.film.width, loaded.film.height, 0, 0,
-                                 loaded.film.width, loaded.film.height};
-        films_.assign(partCount, Film(window, {}, loaded.film.color));
+        estimator_ = makeEstimator(withKind(loaded.estimator, settings.estimator));
+        films_.assign(partCount, Film(loaded.film.fullFrame(), {}, loaded.film.color));
     }
 
     /// Gives every part `count` more samples; false if given up.
@@ -64,27 +59,9 @@ public:
     double seconds() const { return seconds_; }
 
     Reference mean() const {
-        Reference reference;
-        std::vector<double> sum, squares;
-        for (const Film& film : films_) {
-            const std::vector<float> pixels = film.channels().front().pixels;
-            sum.resize(pixels.size());
-            squares.resize(pixels.size());
-            for (std::size_t i = 0; i < pixels.size(); ++i) {
-                sum[i] += pixels[i];
-                squares[i] += static_cast<double>(pixels[i]) * pixels[i];
-            }
-        }
-        constexpr double n = partCount;
-        for (std::size_t i = 0; i < sum.size(); ++i) {
-            const double mean = sum[i] / n;
-            reference.picture.push_back(static_cast<float>(mean));
-            reference.variance.push_back(
-                static_cast<float>(std::max(0.0, squares[i] / n - mean * mean) / (n - 1.0)));
-        }
-        reference.samples = static_cast<std::uint64_t>(partCount) * samples_;
-        reference.seconds = seconds_;
-        return reference;
+        std::vector<Picture> pictures;
+        for (const Film& film : films_) pictures.push_back(film.channels().front().pixels);
+        return {meanPicture(pictures), std::uint64_t{partCount} * samples_, seconds_, {}};
     }
 
 private:
@@ -96,16 +73,6 @@ private:
     std::uint32_t samples_ = 0;  // of each part
     double seconds_ = 0.0;
 };
-
-/// Of the estimate, whose variance is known: the expectation of (a − r)² / (r² + 0.01).
-double expectedRelMse(const Reference& reference) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < reference.picture.size(); ++i) {
-        const double r = reference.picture[i];
-        sum += reference.variance[i] / (r * r + 0.01);
-    }
-    return sum / static_cast<double>(reference.picture.size());
-}
 
 struct CacheFiles {
     CacheFiles(const std::filesystem::path& directory, const std::string& key)
@@ -126,21 +93,18 @@ std::optional<Reference> cached(const CacheFiles& files, const std::string& key)
     const BenchRecords records = readBenchRecords(files.facts);
     if (records.references.empty() || records.references.front().key != key) return {};
     const BenchReference& facts = records.references.front();
-    return Reference{pixelsOf(files.picture),
-                     pixelsOf(files.variance),
+    return Reference{{pixelsOf(files.picture), pixelsOf(files.variance), facts.relMse},
                      facts.samples,
                      facts.seconds,
-                     facts.relMse,
                      key};
 }
 
 void keep(const CacheFiles& files, const Reference& reference, const FilmSettings& film) {
     std::filesystem::create_directories(files.facts.parent_path());
-    const FrameWindow window{film.width, film.height, 0, 0, film.width, film.height};
-    writeExr(files.picture, window, {{{"R", "G", "B"}, reference.picture}}, {});
-    writeExr(files.variance, window, {{{"R", "G", "B"}, reference.variance}}, {});
+    writeExr(files.picture, film.fullFrame(), {{{"R", "G", "B"}, reference.mean.pixels}}, {});
+    writeExr(files.variance, film.fullFrame(), {{{"R", "G", "B"}, reference.mean.variance}}, {});
     appendRecord(files.facts, BenchReference{"", "", "", reference.key, reference.samples,
-                                             reference.seconds, reference.relMse});
+                                             reference.seconds, reference.mean.relMse});
 }
 
 }  // namespace
@@ -150,7 +114,8 @@ std::filesystem::path referenceCacheDirectory() {
     return fits.empty() ? fits : fits.parent_path() / "references";
 }
 
-std::optional<Reference> referenceFor(const LoadedScene& loaded, const ReferenceSettings& settings,
+std::optional<Reference> referenceFor(const LoadedScene& loaded,
+                                      const BenchReferenceSettings& settings,
                                       const std::filesystem::path& directory,
                                       const std::function<bool(double)>& goOn) {
     const std::string key = keyOf(loaded, settings);
@@ -168,7 +133,6 @@ std::optional<Reference> referenceFor(const LoadedScene& loaded, const Reference
     while (parts.samples() == 0 || 1.25 * parts.seconds() < settings.seconds)
         if (!parts.add(std::max(1u, parts.samples() / 2), listen)) return {};
     Reference reference = parts.mean();
-    reference.relMse = expectedRelMse(reference);
     reference.key = key;
     if (!directory.empty()) keep(files, reference, loaded.film);
     return reference;

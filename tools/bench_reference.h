@@ -7,23 +7,21 @@
 #include <string>
 
 #include "renderer/scene_loader.h"
-#include "statistics/picture_comparison.h"
+#include "statistics/image_error.h"
 
 namespace etendue {
 
-struct ReferenceSettings {
+struct BenchReferenceSettings {
     std::string estimator = "bdpt";
     double seconds = 60.0;  // of rendering, about
     int threads = 1;
 };
 
 struct Reference {
-    Picture picture;
-    Picture variance;           // of each of its values: the square of its standard error
+    MeanPicture mean;
     std::uint64_t samples = 0;  // per pixel
     double seconds = 0.0;
-    double relMse = 0.0;  // expected of it, from `variance`
-    std::string key;      // hash of scene, settings and program
+    std::string key;  // hash of scene, settings and program
 };
 
 /// $XDG_CACHE_HOME/etendue/references, or ~/.cache/…; empty when the environment names neither.
@@ -33,7 +31,8 @@ std::filesystem::path referenceCacheDirectory();
 /// pictures of equal counts, whose spread tells its error; they get further samples until the time
 /// is over, but never by how they look. `goOn` hears which share is done and returns false to give
 /// up; then the result is empty. Its seeds are none that a benchmark uses.
-std::optional<Reference> referenceFor(const LoadedScene& loaded, const ReferenceSettings& settings,
+std::optional<Reference> referenceFor(const LoadedScene& loaded,
+                                      const BenchReferenceSettings& settings,
                                       const std::filesystem::path& directory,
                                       const std::function<bool(double)>& goOn);
 

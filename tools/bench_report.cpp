@@ -91,7 +91,8 @@ std::optional<Image> meanPicture(const BenchFolder& folder, const BenchConfigura
     return mean;
 }
 
-Json techniquesOf(const BenchView& view, const BenchFolder& folder, Pictures& pictures) {
+Json techniquesOf(const BenchView& view, const BenchSuite& suite, const BenchFolder& folder,
+                  Pictures& pictures) {
     Json images = Json::array();
     const std::filesystem::path file = folder.techniques(view.scene.name, view.camera.name);
     for (int length = 2; isThere(file) && length <= 8; ++length)
@@ -102,18 +103,15 @@ Json techniquesOf(const BenchView& view, const BenchFolder& folder, Pictures& pi
             };
             const auto weighted = layer(name), unweighted = layer(name + ".unweighted");
             if (!weighted || !unweighted) continue;
-            const Image frame =
-                readImage(folder.referencePicture(view.scene.name, view.camera.name));
             images.add(Json::object(
                 {{"s", s},
                  {"t", length - s},
-                 {"picture", pictures.add(frame.width, frame.height, weighted->pixels)},
-                 {"unweighted", pictures.add(frame.width, frame.height, unweighted->pixels)}}));
+                 {"picture", pictures.add(suite.width, suite.height, weighted->pixels)},
+                 {"unweighted", pictures.add(suite.width, suite.height, unweighted->pixels)}}));
         }
     return images;
 }
 
-/// What a lens is fitted by is known to its records, an estimator's efficiency to its results.
 Json jsonOf(const BenchPoint& p, Json flip) {
     return Json::object({{"samples", p.samples},
                          {"seconds", p.seconds},
@@ -228,7 +226,7 @@ Json benchReportData(const BenchSuite& suite, const BenchRecords& records,
         if (isThere(folder.techniques(view.scene.name, view.camera.name)))
             techniques.add(Json::object({{"scene", view.scene.name},
                                          {"camera", view.camera.name},
-                                         {"images", techniquesOf(view, folder, pictures)}}));
+                                         {"images", techniquesOf(view, suite, folder, pictures)}}));
     return Json::object({{"title", suite.title},
                          {"command", header.command},
                          {"version", header.version},

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "lens/fit_cache.h"
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
 #include "tools/bench_fit_error.h"
@@ -19,10 +18,6 @@
 namespace etendue {
 
 namespace {
-
-FrameWindow windowOf(const FilmSettings& film) {
-    return {film.width, film.height, 0, 0, film.width, film.height};
-}
 
 /// One suite's run over one folder.
 class BenchRunner {
@@ -116,19 +111,9 @@ private:
     }
 
     LoadedScene load(const BenchView& view, const std::vector<std::string>& overrides) {
-        LoadOptions options;
-        options.overrides = view.overrides;
+        ViewOptions options{view.overrides, suite_.width, suite_.height, settings_.threads, true};
         options.overrides.insert(options.overrides.end(), overrides.begin(), overrides.end());
-        options.overrides.push_back(fmt::format("film.width={}", suite_.width));
-        options.overrides.push_back(fmt::format("film.height={}", suite_.height));
-        options.threads = settings_.threads;
-        options.fitCache = fitCacheDirectory();
-        options.fitProgress = [&](double, std::string_view stage) {
-            bar_.update(fmt::format("{}: {}", titleOf(view), stage), 0.0);
-        };
-        options.camera = view.camera.file;
-        options.disperses = view.camera.file.empty() || view.camera.isDispersive;
-        return loadScene(view.scene.file, options);
+        return loadView(view.scene, view.camera, options, bar_);
     }
 
     bool runView(const BenchView& view) {
@@ -197,7 +182,8 @@ private:
             const BenchVariant& variant = view.variants[v];
             if (!variants[v].fit || hasFitError(view, variant)) continue;
             const auto goOn = [&] {
-                bar_.update(fmt::format("{}, {}: error of the fit", titleOf(view), variant.name),
+                bar_.update(fmt::format("{}, {}: error of the fit",
+                                        titleOf(view.scene, view.camera), variant.name),
                             0.0);
                 return !isStopRequested();
             };
@@ -216,9 +202,9 @@ private:
 
     /// The truth of a lens of glass is its exact trace.
     std::optional<Picture> referenceOf(const BenchView& view, const LoadedScene& truth) {
-        const std::string title = titleOf(view) + ": reference";
-        const ReferenceSettings settings{suite_.referenceEstimator, suite_.referenceSeconds,
-                                         settings_.threads};
+        const std::string title = titleOf(view.scene, view.camera) + ": reference";
+        const BenchReferenceSettings settings{suite_.referenceEstimator, suite_.referenceSeconds,
+                                              settings_.threads};
         const std::optional<Reference> reference =
             referenceFor(truth, settings, referenceCacheDirectory(), [&](double share) {
                 bar_.update(fmt::format("{} {:.0f} %", title, 100.0 * share), 0.0);
@@ -231,14 +217,14 @@ private:
         };
         if (std::none_of(records_.references.begin(), records_.references.end(), isSame)) {
             writeExr(folder_.referencePicture(view.scene.name, view.camera.name),
-                     windowOf(truth.film), {{{"R", "G", "B"}, reference->picture}}, {});
+                     truth.film.fullFrame(), {{{"R", "G", "B"}, reference->mean.pixels}}, {});
             const BenchReference record{
                 view.scene.name,    view.camera.name,   suite_.referenceEstimator, reference->key,
-                reference->samples, reference->seconds, reference->relMse};
+                reference->samples, reference->seconds, reference->mean.relMse};
             appendRecord(folder_.records(), record);
             records_.references.push_back(record);
         }
-        return reference->picture;
+        return reference->mean.pixels;
     }
 
     bool runOne(const BenchConfiguration& configuration, int seed, const LoadedScene& loaded,
@@ -255,7 +241,7 @@ private:
             return !isStopRequested();
         });
         if (!render) return false;
-        writeExr(folder_.picture(configuration, seed), windowOf(loaded.film),
+        writeExr(folder_.picture(configuration, seed), loaded.film.fullFrame(),
                  {{{"R", "G", "B"}, render->picture}}, {});
         const BenchRun run{configuration,      seed,         loaded.hash,        load,
                            render->badSamples, render->flip, render->checkpoints};
@@ -270,23 +256,20 @@ private:
     bool renderTechniques(const BenchView& view, const LoadedScene& loaded) {
         const std::filesystem::path file = folder_.techniques(view.scene.name, view.camera.name);
         if (std::filesystem::exists(file)) return true;
-        EstimatorSettings kind = loaded.estimator;
-        kind.kind = "bdpt";
-        kind.techniques = {};
-        Film film(windowOf(loaded.film), {}, loaded.film.color);
+        Film film(loaded.film.fullFrame(), {}, loaded.film.color);
         TechniqueImages images(film.window(), film.color());
         RenderSettings settings;
         settings.samples = suite_.mostSamples;
         settings.timeLimitSeconds = suite_.seconds;
         settings.threads = settings_.threads;
         settings.techniqueImages = &images;
-        const RenderResult result =
-            render(*loaded.scene, *loaded.camera, *makeEstimator(kind),
-                   Filter(loaded.film.filter, loaded.film.filterRadius), film, settings,
-                   [&](const RenderProgress&) {
-                       bar_.update(titleOf(view) + ": techniques of bdpt", 0.0);
-                       return !isStopRequested();
-                   });
+        const RenderResult result = render(
+            *loaded.scene, *loaded.camera, *makeEstimator(withKind(loaded.estimator, "bdpt")),
+            Filter(loaded.film.filter, loaded.film.filterRadius), film, settings,
+            [&](const RenderProgress&) {
+                bar_.update(titleOf(view.scene, view.camera) + ": techniques of bdpt", 0.0);
+                return !isStopRequested();
+            });
         if (result.wasInterrupted) return false;
         writeExr(file, film.window(), images.channels(film.samples(), film.state().lightPaths), {});
         return true;

@@ -53,17 +53,14 @@ void loadGroup(const ConfigTable& group, const std::filesystem::path& folder, Be
             view.camera = cameraCalled(camera, folder);
             for (const BenchView& other : suite.views)
                 if (isSameView(view, other))
-                    group.fail("scenes", fmt::format("{} is in another group, too", titleOf(view)));
+                    group.fail("scenes", fmt::format("{} is in another group, too",
+                                                     titleOf(view.scene, view.camera)));
             suite.views.push_back(view);
         }
     group.finish();
 }
 
 }  // namespace
-
-std::string titleOf(const BenchView& view) {
-    return fmt::format("{}, {}", view.scene.name, view.camera.name);
-}
 
 std::size_t BenchSuite::runCount() const {
     std::size_t count = 0;
@@ -77,7 +74,7 @@ std::string BenchSuite::key() const {
                                    mostSamples, targetRelMse, referenceSeconds, referenceEstimator,
                                    wantsTechniques, wantsFitErrors);
     for (const BenchView& view : views) {
-        text += titleOf(view);
+        text += titleOf(view.scene, view.camera);
         for (const std::string& assignment : view.overrides) text += " -s " + assignment;
         for (const std::string& name : view.estimators) text += " " + name;
         for (const BenchVariant& variant : view.variants) {

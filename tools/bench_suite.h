@@ -47,7 +47,4 @@ struct BenchSuite {
 /// there. Scenes and cameras by name are those of the folder above the file's, or of its `folder`.
 BenchSuite loadBenchSuite(const std::filesystem::path& file);
 
-/// The names of a view's scene and camera, "cornell-box, thin-lens".
-std::string titleOf(const BenchView& view);
-
 }  // namespace etendue

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "renderer/image_io.h"
@@ -147,8 +146,7 @@ Comparison compare(const CompareCommand& command, const LightPicture& picture,
     } else {
         c.meanErrorHalfWidth = meanErrorHalfWidthByScatter(picture.rgb, reference.rgb);
     }
-    const std::vector<float> flip = hdrFlip(picture.rgb, reference.rgb, picture.width);
-    c.flip = std::accumulate(flip.begin(), flip.end(), 0.0) / static_cast<double>(flip.size());
+    c.flip = meanHdrFlip(picture.rgb, reference.rgb, picture.width);
     c.exposures = flipExposures(reference.rgb);
     if (command.testsMeans) c.z = testMeans(command, picture, reference);
     c.exceeded = exceededLimits(command, c);

@@ -104,9 +104,7 @@ bool mayHave(const SceneLights& lights, PathClass pathClass) {
 
 /// Paths of one technique's length, of that technique alone if it is the contender's own.
 EstimatorSettings settingsOf(const CommonPathsSettings& s) {
-    EstimatorSettings result = s.estimator;
-    result.kind = s.self.kind;
-    result.techniques = {};
+    EstimatorSettings result = withKind(s.estimator, s.self.kind);
     result.lightPaths = 1;
     for (const Contender* contender : {&s.self, &s.other})
         if (const auto& technique = contender->technique)

@@ -1,32 +1,20 @@
 #include "tools/progressive_render.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "renderer/render.h"
 #include "statistics/flip.h"
 
 namespace etendue {
 
-namespace {
-
-double meanOf(const std::vector<float>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-}  // namespace
-
 std::optional<ProgressiveRender> renderProgressively(const LoadedScene& loaded,
                                                      const ProgressiveSettings& settings,
                                                      const Picture& reference,
                                                      const std::function<bool(double)>& goOn) {
-    EstimatorSettings kind = loaded.estimator;
-    kind.kind = settings.estimator;
-    kind.techniques = {};
-    const std::unique_ptr<Estimator> estimator = makeEstimator(kind);
+    const std::unique_ptr<Estimator> estimator =
+        makeEstimator(withKind(loaded.estimator, settings.estimator));
     const Filter filter(loaded.film.filter, loaded.film.filterRadius);
-    Film film({loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height},
-              {}, loaded.film.color);
+    Film film(loaded.film.fullFrame(), {}, loaded.film.color);
     ProgressiveRender progressive;
     double seconds = 0.0;
     std::uint32_t samples = 0;
@@ -51,7 +39,7 @@ std::optional<ProgressiveRender> renderProgressively(const LoadedScene& loaded,
         progressive.checkpoints.push_back(
             {samples, seconds, imageErrors(progressive.picture, reference)});
     }
-    progressive.flip = meanOf(hdrFlip(progressive.picture, reference, loaded.film.width));
+    progressive.flip = meanHdrFlip(progressive.picture, reference, loaded.film.width);
     return progressive;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "lens/fit_cache.h"
 #include "renderer/content_hash.h"
 #include "renderer/parallel.h"
 #include "tools/progress.h"
@@ -54,7 +53,7 @@ public:
         forEachView(bar, [&](const NamedFile& scene, const NamedFile& camera) {
             const std::string title = titleOf(scene, camera);
             const LoadedScene loaded = load(scene, camera, width, height, bar);
-            ReferenceSettings settings;
+            RegressReferenceSettings settings;
             settings.threads = threads_;
             settings.tileSize = tileSize;
             if (command_.samples) settings.samples = static_cast<std::uint32_t>(*command_.samples);
@@ -113,10 +112,6 @@ private:
         bar.clear();
     }
 
-    static std::string titleOf(const NamedFile& scene, const NamedFile& camera) {
-        return fmt::format("{}, {}", scene.name, camera.name);
-    }
-
     std::filesystem::path fileOf(const NamedFile& scene, const NamedFile& camera) const {
         return referenceFile(command_.data / "references", scene.name, camera.name);
     }
@@ -148,7 +143,7 @@ private:
             const ReferencePicture& picture = pictureFor(reference, estimator, regions, file);
             const auto held = testCell(loaded, picture, regions, result, bar);
             if (!held) return;
-            bar.finishJob(fmt::format("{}: {}", etendue::titleOf(result.cell), outcomeOf(result)));
+            bar.finishJob(fmt::format("{}: {}", titleOf(result.cell), outcomeOf(result)));
             results_.cells.push_back(result);
             all.emplace_back(estimator, *held);
         }
@@ -177,7 +172,7 @@ private:
         settings.threads = threads_;
         const auto rendered = renderSeeds(
             loaded, testedPaths(loaded.estimator, result.cell.estimator, picture.leavesOut),
-            settings, goOn(bar, etendue::titleOf(result.cell)));
+            settings, goOn(bar, titleOf(result.cell)));
         if (!rendered) return {};
         result.seconds = rendered->seconds;
         result.badSamples = rendered->badSamples;
@@ -218,17 +213,7 @@ private:
 
     LoadedScene load(const NamedFile& scene, const NamedFile& camera, int across, int down,
                      JobBar& bar) const {
-        LoadOptions options;
-        options.overrides = {fmt::format("film.width={}", across),
-                             fmt::format("film.height={}", down)};
-        options.threads = threads_;
-        options.fitCache = fitCacheDirectory();
-        options.fitProgress = [&](double, std::string_view stage) {
-            bar.update(fmt::format("{}: {}", titleOf(scene, camera), stage), 0.0);
-        };
-        options.camera = camera.file;
-        options.disperses = camera.isDispersive;
-        return loadScene(scene.file, options);
+        return loadView(scene, camera, {{}, across, down, threads_}, bar);
     }
 
     const RegressCommand& command_;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "statistics/image_error.h"
+#include "tools/agreement_judge.h"
 
 namespace etendue {
 
@@ -89,7 +90,7 @@ SumTest testSum(std::span<const MeanTerm> terms) {
     for (const MeanTerm& term : terms)
         if (term.sign * result.difference < 0.0) step = std::max(step, term.step);
     result.guardedP =
-        std::max(result.p, studentTwoSidedP(size / std::sqrt(variance + size * step), freedom));
+        guardedP(WelchResult{result.difference, std::sqrt(variance), freedom, result.p}, step);
     return result;
 }
 

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "renderer/parallel.h"
+#include "statistics/tiles.h"
 #include "tools/watched_estimator.h"
 
 namespace etendue {
@@ -26,7 +27,7 @@ OneSeed renderSeed(const LoadedScene& loaded, const CommonPathsSettings& paths,
                    const std::function<bool()>& goOn) {
     const FilmSettings& frame = loaded.film;
     const Filter filter(frame.filter, frame.filterRadius);
-    Film film({frame.width, frame.height, 0, 0, frame.width, frame.height}, {}, frame.color);
+    Film film(frame.fullFrame(), {}, frame.color);
     const auto estimator = makeCommonPaths(*loaded.scene, *loaded.camera, paths);
     const WatchedEstimator watched(*estimator, loaded);
     OneSeed result;
@@ -51,15 +52,6 @@ OneSeed renderSeed(const LoadedScene& loaded, const CommonPathsSettings& paths,
         frame.color);
     result.isComplete = true;
     return result;
-}
-
-/// Calls body(i, j, x0, y0, x1, y1) for each tile, row by row.
-template <typename Body>
-void forEachTile(const PictureRegions& regions, const Body& body) {
-    for (int y = 0; y < regions.height; y += regions.tileSize)
-        for (int x = 0; x < regions.width; x += regions.tileSize)
-            body(x, y, std::min(x + regions.tileSize, regions.width),
-                 std::min(y + regions.tileSize, regions.height));
 }
 
 }  // namespace
@@ -102,9 +94,7 @@ std::size_t PictureRegions::count() const { return pixels().size(); }
 
 std::vector<int> PictureRegions::pixels() const {
     std::vector<int> result;
-    forEachTile(*this, [&](int x0, int y0, int x1, int y1) {
-        result.insert(result.end(), 3, (x1 - x0) * (y1 - y0));
-    });
+    for (const Tile& tile : tilesOf(width, height, tileSize)) result.push_back(tile.pixels());
     result.push_back(width * height);
     return result;
 }
@@ -112,17 +102,11 @@ std::vector<int> PictureRegions::pixels() const {
 std::vector<double> PictureRegions::meansOf(const Picture& picture) const {
     std::vector<double> means;
     double whole = 0.0;
-    forEachTile(*this, [&](int x0, int y0, int x1, int y1) {
-        for (std::size_t color = 0; color < 3; ++color) {
-            double sum = 0.0;
-            for (int y = y0; y < y1; ++y)
-                for (int x = x0; x < x1; ++x)
-                    sum += static_cast<double>(
-                        picture[3 * static_cast<std::size_t>(y * width + x) + color]);
-            means.push_back(sum / ((x1 - x0) * (y1 - y0)));
-            whole += sum;
-        }
-    });
+    for (const Tile& tile : tilesOf(width, height, tileSize)) {
+        const double sum = sumIn(tile, picture, width);
+        means.push_back(sum / tile.pixels());
+        whole += sum;
+    }
     means.push_back(whole / (3.0 * width * height));
     return means;
 }

@@ -1,9 +1,9 @@
 #include "tools/regress_reference.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <utility>
 
+#include "statistics/image_error.h"
 #include "tools/regress_pictures.h"
 
 namespace etendue {
@@ -14,28 +14,8 @@ bool isAnyLeftOut(const LeftOutMeans& leftOut) {
     return std::ranges::any_of(leftOut, [](double mean) { return mean != 0.0; });
 }
 
-/// Mean of the batches, and what is expected of its relMSE.
-void setPixels(const std::vector<Picture>& batches, ReferencePicture& result) {
-    const auto count = static_cast<double>(batches.size());
-    result.pixels.resize(batches.front().size());
-    double noise = 0.0;
-    for (std::size_t i = 0; i < result.pixels.size(); ++i) {
-        double sum = 0.0, squares = 0.0;
-        for (const Picture& batch : batches) sum += static_cast<double>(batch[i]);
-        const double mean = sum / count;
-        for (const Picture& batch : batches) {
-            const double deviation = static_cast<double>(batch[i]) - mean;
-            squares += deviation * deviation;
-        }
-        result.pixels[i] = static_cast<float>(mean);
-        // As imageErrors weighs it.
-        noise += squares / (count * (count - 1.0)) / (mean * mean + 0.01);
-    }
-    result.noise = noise / static_cast<double>(result.pixels.size());
-}
-
 ReferencePicture pictureOf(const SeedPictures& rendered, const std::string& by,
-                           const ReferenceSettings& settings, const FilmSettings& film) {
+                           const RegressReferenceSettings& settings, const FilmSettings& film) {
     const PictureRegions regions{film.width, film.height, settings.tileSize};
     ReferencePicture result;
     result.by = by;
@@ -43,14 +23,16 @@ ReferencePicture pictureOf(const SeedPictures& rendered, const std::string& by,
     result.largest = rendered.largest;
     for (const Picture& batch : rendered.pictures.back())
         result.means.push_back(regions.meansOf(batch));
-    setPixels(rendered.pictures.back(), result);
+    MeanPicture mean = meanPicture(rendered.pictures.back());
+    result.pixels = std::move(mean.pixels);
+    result.noise = mean.relMse;
     return result;
 }
 
 /// Renders pictures for references, each with seeds of its own.
 class ReferenceMaker {
 public:
-    ReferenceMaker(const LoadedScene& loaded, const ReferenceSettings& settings,
+    ReferenceMaker(const LoadedScene& loaded, const RegressReferenceSettings& settings,
                    const std::function<bool()>& goOn)
         : loaded_(loaded), settings_(settings), goOn_(goOn), nextSeed_(settings.firstSeed) {}
 
@@ -72,7 +54,7 @@ public:
         // Better by another estimator that makes all of the light, if that is not by far noisier.
         const bool isPtWhole = isAllOfPt && !isAnyLeftOut(pt->leftOut);
         if (const std::string other = isPtWhole ? "pt" : isAllOfLt ? "lt" : ""; !other.empty()) {
-            ReferenceSettings more = settings_;
+            RegressReferenceSettings more = settings_;
             more.samples *= otherSamples;
             const auto rendered = render(other, other, more.samples);
             if (!rendered) return {};
@@ -122,7 +104,7 @@ private:
     }
 
     const LoadedScene& loaded_;
-    ReferenceSettings settings_;
+    RegressReferenceSettings settings_;
     const std::function<bool()>& goOn_;
     std::uint64_t nextSeed_;
 };
@@ -135,7 +117,7 @@ const ReferencePicture* RegressReference::of(std::string_view estimator) const {
 }
 
 std::optional<RegressReference> makeReference(const LoadedScene& loaded,
-                                              const ReferenceSettings& settings,
+                                              const RegressReferenceSettings& settings,
                                               const std::function<bool()>& goOn) {
     return ReferenceMaker(loaded, settings, goOn).make();
 }

@@ -46,7 +46,7 @@ std::filesystem::path referenceFile(const std::filesystem::path& folder, const s
 RegressReference readReference(const std::filesystem::path& file);
 std::string referenceText(const RegressReference& reference);
 
-struct ReferenceSettings {
+struct RegressReferenceSettings {
     int batches = 16;
     std::uint32_t samples = 64;  // per pixel of each
     std::uint64_t firstSeed = 1u << 20;
@@ -57,7 +57,7 @@ struct ReferenceSettings {
 /// Renders the references of pt, lt and bdpt; empty when `goOn` has said false. `scene` and
 /// `camera` stay empty.
 std::optional<RegressReference> makeReference(const LoadedScene& loaded,
-                                              const ReferenceSettings& settings,
+                                              const RegressReferenceSettings& settings,
                                               const std::function<bool()>& goOn);
 
 /// What an estimator renders when it is held against its reference.

@@ -18,7 +18,7 @@ namespace etendue {
 namespace {
 
 FrameWindow windowFor(const RenderCommand& command, const FilmSettings& film) {
-    FrameWindow window{film.width, film.height, 0, 0, film.width, film.height};
+    FrameWindow window = film.fullFrame();
     if (command.crop.empty()) return window;
     window.x = command.crop[0];
     window.y = command.crop[1];

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "config/config.h"
+#include "lens/fit_cache.h"
 
 namespace etendue {
 
@@ -80,6 +81,26 @@ std::vector<NamedFile> scenesCalled(const std::vector<std::string>& names,
     std::vector<NamedFile> scenes;
     for (const std::string& name : wanted) scenes.push_back(sceneCalled(name, folder));
     return scenes;
+}
+
+std::string titleOf(const NamedFile& scene, const NamedFile& camera) {
+    return fmt::format("{}, {}", scene.name, camera.name);
+}
+
+LoadedScene loadView(const NamedFile& scene, const NamedFile& camera, const ViewOptions& view,
+                     JobBar& bar) {
+    LoadOptions options;
+    options.overrides = view.overrides;
+    options.overrides.push_back(fmt::format("film.width={}", view.width));
+    options.overrides.push_back(fmt::format("film.height={}", view.height));
+    options.threads = view.threads;
+    options.fitCache = fitCacheDirectory();
+    options.fitProgress = [&](double, std::string_view stage) {
+        bar.update(fmt::format("{}: {}", titleOf(scene, camera), stage), 0.0);
+    };
+    options.camera = camera.file;
+    options.disperses = camera.isDispersive || (camera.file.empty() && view.ownCameraDisperses);
+    return loadScene(scene.file, options);
 }
 
 }  // namespace etendue

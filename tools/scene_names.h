@@ -1,9 +1,12 @@
-// Scenes and cameras by their names in a folder such as scenes/.
+// Scenes and cameras by their names in a folder such as scenes/, and one through the other.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "renderer/scene_loader.h"
+#include "tools/progress.h"
 
 namespace etendue {
 
@@ -26,5 +29,20 @@ std::vector<NamedFile> scenesCalled(const std::vector<std::string>& names,
 
 /// `name`: a file, a file's name in `folder`/cameras, or "own": the scene's. Likewise.
 NamedFile cameraCalled(const std::string& name, const std::filesystem::path& folder);
+
+/// "cornell-box, thin-lens".
+std::string titleOf(const NamedFile& scene, const NamedFile& camera);
+
+/// How a scene is looked at by commands that measure: at their own size, with dispersion only where
+/// the camera's name asks for it.
+struct ViewOptions {
+    std::vector<std::string> overrides;
+    int width = 0, height = 0;
+    int threads = 1;
+    bool ownCameraDisperses = false;  // where the scene's own camera does not say
+};
+/// Loads it; a lens that must be fitted tells the bar how far that is.
+LoadedScene loadView(const NamedFile& scene, const NamedFile& camera, const ViewOptions& options,
+                     JobBar& bar);
 
 }  // namespace etendue

@@ -14,9 +14,7 @@ namespace {
 const std::string sky = "[[light]]\ntype = \"constant\"\nradiance = [1, 1, 1]\n";
 
 Film filmOf(const LoadedScene& loaded) {
-    return Film(
-        {loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height}, {},
-        loaded.film.color);
+    return Film(loaded.film.fullFrame(), {}, loaded.film.color);
 }
 
 RenderResult renderInto(Film& film, const LoadedScene& loaded, const std::string& kind,

@@ -122,3 +122,12 @@ TEST_CASE("biasSquared: finds the bias beneath noise, and none where there is no
 }
 
 }  // namespace etendue
+
+TEST_CASE("Image error: of independent pictures the mean, its variance, and the relMSE to expect") {
+    // Values 1, 3 and 2, 2: means 2, variances of the means 1 and 0.
+    const etendue::MeanPicture mean =
+        etendue::meanPicture({{1.0f, 2.0f, 2.0f}, {3.0f, 2.0f, 2.0f}});
+    CHECK(mean.pixels == etendue::Picture{2.0f, 2.0f, 2.0f});
+    CHECK(mean.variance == etendue::Picture{1.0f, 0.0f, 0.0f});
+    CHECK(mean.relMse == doctest::Approx(1.0 / 4.01 / 3.0));
+}

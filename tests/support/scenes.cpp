@@ -10,8 +10,7 @@ LoadedScene sceneFromText(const std::string& text, const std::vector<std::string
 
 std::vector<float> renderPixels(const LoadedScene& loaded, std::uint32_t samples,
                                 std::uint64_t seed, int threads) {
-    Film film({loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height},
-              {}, loaded.film.color);
+    Film film(loaded.film.fullFrame(), {}, loaded.film.color);
     const Filter filter(loaded.film.filter, loaded.film.filterRadius);
     const auto estimator = makeEstimator(loaded.estimator);
     RenderSettings settings;

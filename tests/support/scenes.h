@@ -12,6 +12,25 @@
 
 namespace etendue {
 
+/// A grey ball under an even sky, 30 × 20 pixels.
+inline constexpr const char* ballScene = R"(
+[film]
+width = 30
+height = 20
+[camera]
+from = [0, 0.5, 3]
+to = [0, 0, 0]
+[[material]]
+name = "wall"
+color = [0.5, 0.6, 0.7]
+[[mesh]]
+shape = "sphere"
+material = "wall"
+[[light]]
+type = "constant"
+radiance = [1, 1, 1]
+)";
+
 /// Loads a scene from the text of its file.
 LoadedScene sceneFromText(const std::string& text, const std::vector<std::string>& overrides = {});
 

@@ -11,24 +11,6 @@ using namespace etendue;
 
 namespace {
 
-constexpr const char* noisyScene = R"(
-[film]
-width = 30
-height = 20
-[camera]
-from = [0, 0.5, 3]
-to = [0, 0, 0]
-[[material]]
-name = "wall"
-color = [0.5, 0.6, 0.7]
-[[mesh]]
-shape = "sphere"
-material = "wall"
-[[light]]
-type = "constant"
-radiance = [1, 1, 1]
-)";
-
 const auto patiently = [] { return true; };
 
 FitImageError errorOf(const LoadedScene& exact, const LoadedScene& fitted,
@@ -39,13 +21,13 @@ FitImageError errorOf(const LoadedScene& exact, const LoadedScene& fitted,
 
 LoadedScene brighterBy(double percent) {
     const std::string stops = std::to_string(std::log2(1.0 + 0.01 * percent));
-    return sceneFromText(noisyScene, {"camera.exposure=" + stops});
+    return sceneFromText(ballScene, {"camera.exposure=" + stops});
 }
 
 }  // namespace
 
 TEST_CASE("Fit error: a picture brighter by a known share, free of the noise of both") {
-    const LoadedScene exact = sceneFromText(noisyScene);
+    const LoadedScene exact = sceneFromText(ballScene);
     for (const double percent : {0.1, 1.0, 10.0}) {
         CAPTURE(percent);
         const FitImageError error = errorOf(exact, brighterBy(percent), {8, 16, 1});
@@ -60,7 +42,7 @@ TEST_CASE("Fit error: a picture brighter by a known share, free of the noise of 
 }
 
 TEST_CASE("Fit error: of one lens by itself there is none") {
-    const LoadedScene exact = sceneFromText(noisyScene);
+    const LoadedScene exact = sceneFromText(ballScene);
     const FitImageError error = errorOf(exact, exact, {3, 1, 1});
     CHECK(error.relMse == 0.0);
     CHECK(error.interval.width() == 0.0);
@@ -69,17 +51,17 @@ TEST_CASE("Fit error: of one lens by itself there is none") {
 TEST_CASE("Fit error: pictures with numbers of their own differ by noise, which is no error") {
     // Roulette from the first bounce on: the same picture, with other noise.
     const LoadedScene a = sceneFromText(
-        noisyScene, {"camera.model=thin-lens", "camera.f_number=8", "camera.focus_distance=3"});
-    const LoadedScene b = sceneFromText(
-        noisyScene, {"camera.model=thin-lens", "camera.f_number=8", "camera.focus_distance=3",
-                     "estimator.russian_roulette_depth=1"});
+        ballScene, {"camera.model=thin-lens", "camera.f_number=8", "camera.focus_distance=3"});
+    const LoadedScene b =
+        sceneFromText(ballScene, {"camera.model=thin-lens", "camera.f_number=8",
+                                  "camera.focus_distance=3", "estimator.russian_roulette_depth=1"});
     const FitImageError error = errorOf(a, b, {8, 4, 1});
     CHECK(error.interval.contains(0.0));
     CHECK(error.interval.width() > 0.0);
 }
 
 TEST_CASE("Fit error: the noise of one sample is told, whatever the samples") {
-    const LoadedScene exact = sceneFromText(noisyScene);
+    const LoadedScene exact = sceneFromText(ballScene);
     const auto noiseOf = [&](std::uint32_t samples) {
         return errorOf(exact, exact, {8, samples, 1}).noiseOfOneSample;
     };
@@ -90,6 +72,6 @@ TEST_CASE("Fit error: the noise of one sample is told, whatever the samples") {
 }
 
 TEST_CASE("Fit error: given up, there is none") {
-    const LoadedScene exact = sceneFromText(noisyScene);
+    const LoadedScene exact = sceneFromText(ballScene);
     CHECK(!fitErrorPictures(exact, {}, [] { return false; }));
 }

@@ -57,8 +57,8 @@ set = ["camera.terms=64"]
 )");
     CHECK(suite.title == "All");
     CHECK(suite.views.size() == 4);
-    CHECK(titleOf(suite.views.front()) == "box, own");
-    CHECK(titleOf(suite.views.back()) == "hall, wide");
+    CHECK(titleOf(suite.views.front().scene, suite.views.front().camera) == "box, own");
+    CHECK(titleOf(suite.views.back().scene, suite.views.back().camera) == "hall, wide");
     CHECK(suite.views.front().variants.at(1).overrides.at(0) == "camera.terms=64");
     CHECK(suite.runCount() == 4 * 2 * 2 * 3);
 }

@@ -28,8 +28,7 @@ Outcome renderCommon(const LoadedScene& loaded, const std::string& self, const s
     const auto estimator = makeCommonPaths(*loaded.scene, *loaded.camera,
                                            {loaded.estimator, parseContender(self).value(),
                                             parseContender(other).value(), keepsByChance});
-    Film film({loaded.film.width, loaded.film.height, 0, 0, loaded.film.width, loaded.film.height},
-              {}, loaded.film.color);
+    Film film(loaded.film.fullFrame(), {}, loaded.film.color);
     const Filter filter(loaded.film.filter, loaded.film.filterRadius);
     RenderSettings render;
     render.samples = samples;

@@ -23,7 +23,7 @@ struct Regression {
         options.threads = 8;  // Embree caps all threads of the process
         options.camera = folder / "scenes/cameras/wide.toml";
         options.disperses = false;
-        ReferenceSettings settings;
+        RegressReferenceSettings settings;
         settings.batches = 8;
         settings.samples = 32;
         settings.threads = 2;

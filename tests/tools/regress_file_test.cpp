@@ -101,7 +101,7 @@ TEST_CASE("Regress reference: a file that is not there or not what was written i
 TEST_CASE("Regress reference: those of estimators that see one picture are one") {
     const LoadedScene loaded =
         sceneFromText(everyMaterialScene, {"film.width=12", "film.height=8"});
-    ReferenceSettings settings;
+    RegressReferenceSettings settings;
     settings.batches = 3;
     settings.samples = 2;
     const auto goOn = [] { return true; };

@@ -3,37 +3,19 @@
 
 #include <algorithm>
 
-#include "tests/support/temporary_folder.h"
+#include "tests/support/scenes.h"
 #include "tests/tools/command_outcome.h"
 
 using namespace etendue;
 
 namespace {
 
-constexpr const char* boxScene = R"(
-[film]
-width = 8
-height = 6
-[camera]
-from = [0, 0, 3]
-to = [0, 0, 0]
-[[material]]
-name = "wall"
-color = [0.5, 0.6, 0.7]
-[[mesh]]
-shape = "sphere"
-material = "wall"
-[[light]]
-type = "constant"
-radiance = [1, 1, 1]
-)";
-
 /// A scene, a suite of it, and a cache of references of their own.
 struct Bench {
     Bench() {
         for (const char* name : {"scenes", "scenes/ball", "scenes/suites", "cache"})
             std::filesystem::create_directories(folder / name);
-        folder.write("scenes/ball/scene.toml", boxScene);
+        folder.write("scenes/ball/scene.toml", ballScene);
         folder.write("scenes/suites/suite.toml",
                      "[suite]\ntitle = \"A <ball>\"\nwidth = 8\nheight = 6\nseeds = 2\nseconds = "
                      "10\nmost_samples = 8\nreference_seconds = 0.01\n[[group]]\nscenes = "
@@ -103,7 +85,7 @@ TEST_CASE("Bench: results of other settings, or of a scene that has changed, are
     CHECK(contains(threads.output, "threads"));
     const std::string all = bench.records();
     writeFile(bench.out() / "results.jsonl", all.substr(0, all.rfind('\n', all.size() - 2) + 1));
-    writeFile(bench.folder / "scenes/ball/scene.toml", std::string(boxScene) + "# changed\n");
+    writeFile(bench.folder / "scenes/ball/scene.toml", std::string(ballScene) + "# changed\n");
     const Outcome changed = bench.run();
     CHECK(changed.code == 65);
     CHECK(contains(changed.output, "as it was before it was changed"));

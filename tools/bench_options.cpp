@@ -18,6 +18,15 @@ namespace {
 
 using Chosen = std::function<ExitCode()>;
 
+/// Names separated by commas; words that follow belong to another option, such as scenes.
+CLI::Option* addList(CLI::App& app, const char* name, std::vector<std::string>& list,
+                     const char* description) {
+    return app.add_option(name, list, description)
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("LIST");
+}
+
 void addAgreement(CLI::App& bench, Chosen& chosen) {
     const auto command = std::make_shared<AgreementCommand>();
     AgreementCommand& c = *command;
@@ -35,22 +44,14 @@ void addAgreement(CLI::App& bench, Chosen& chosen) {
         ->type_name("SCENE");
     agreement->add_option("--scenes", c.folder, "Folder of scenes and of cameras/; default: scenes")
         ->type_name("DIR");
-    agreement
-        ->add_option("--cameras", c.cameras,
-                     "Names in cameras/, files, own: the scene's; default: pinhole,thin-lens,"
-                     "double-gauss,double-gauss+dispersion,double-gauss-traced,fisheye,"
-                     "anamorphic")
-        ->delimiter(',')
-        ->allow_extra_args(false)  // scenes may follow
-        ->type_name("LIST");
-    agreement
-        ->add_option("--estimators", c.estimators,
-                     "To test, or techniques such as bdpt:s2t1; default: lt,bdpt, and lt against "
-                     "bdpt")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(contenders)
-        ->type_name("LIST");
+    addList(*agreement, "--cameras", c.cameras,
+            "Names in cameras/, files, own: the scene's; default: pinhole,thin-lens,"
+            "double-gauss,double-gauss+dispersion,double-gauss-traced,fisheye,"
+            "anamorphic");
+    addList(*agreement, "--estimators", c.estimators,
+            "To test, or techniques such as bdpt:s2t1; default: lt,bdpt, and lt against "
+            "bdpt")
+        ->check(contenders);
     agreement->add_option("--against", c.reference, "By which estimator; default: pt")
         ->check(contenders)
         ->type_name("NAME");
@@ -108,18 +109,11 @@ void addRegress(CLI::App& bench, Chosen& chosen) {
         ->type_name("SCENE");
     regress->add_option("--scenes", c.folder, "Folder of scenes and of cameras/; default: scenes")
         ->type_name("DIR");
-    regress
-        ->add_option("--cameras", c.cameras,
-                     "Names in cameras/; default: pinhole,thin-lens,double-gauss,"
-                     "double-gauss-traced,fisheye,anamorphic")
-        ->delimiter(',')
-        ->allow_extra_args(false)  // scenes may follow
-        ->type_name("LIST");
-    regress->add_option("--estimators", c.estimators, "Default: pt,lt,bdpt")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::IsMember(estimatorKinds()).description(""))
-        ->type_name("LIST");
+    addList(*regress, "--cameras", c.cameras,
+            "Names in cameras/; default: pinhole,thin-lens,double-gauss,"
+            "double-gauss-traced,fisheye,anamorphic");
+    addList(*regress, "--estimators", c.estimators, "Default: pt,lt,bdpt")
+        ->check(CLI::IsMember(estimatorKinds()).description(""));
     regress
         ->add_option("--data", c.data,
                      "Folder of baseline.toml and references/; default: tests/regression")
@@ -158,17 +152,10 @@ void addSuite(CLI::App& bench, const std::string& commandLine, Chosen& chosen) {
         ->type_name("DIR");
     bench.add_option("--scenes", c.folder, "Folder of scenes and of cameras/; default: scenes")
         ->type_name("DIR");
-    bench
-        .add_option("--cameras", c.cameras,
-                    "Of scenes: names in cameras/, files, own: the scene's; default: own")
-        ->delimiter(',')
-        ->allow_extra_args(false)  // scenes may follow
-        ->type_name("LIST");
-    bench.add_option("--estimators", c.estimators, "Of scenes; default: pt,lt,bdpt")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::IsMember(estimatorKinds()).description(""))
-        ->type_name("LIST");
+    addList(bench, "--cameras", c.cameras,
+            "Of scenes: names in cameras/, files, own: the scene's; default: own");
+    addList(bench, "--estimators", c.estimators, "Of scenes; default: pt,lt,bdpt")
+        ->check(CLI::IsMember(estimatorKinds()).description(""));
     bench.add_option("--time", c.seconds, "Of each run, in place of the suite's; default: 2")
         ->check(numberBetween(1e-3, 1e6))
         ->type_name("SECONDS");

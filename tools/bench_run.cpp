@@ -122,9 +122,12 @@ private:
             variants.push_back(load(view, variant.overrides));
             recordLens(view, variant, variants.back());
         }
-        LoadedScene truth = load(view, {});
-        const bool isFitted = truth.fit.has_value();
-        if (isFitted) truth = load(view, {"camera.representation=traced"});
+        // The scene as it is, which often is the first variant; a lens of glass by its exact trace.
+        std::optional<LoadedScene> other;
+        if (!view.variants.front().overrides.empty()) other = load(view, {});
+        const bool isFitted = (other ? *other : variants.front()).fit.has_value();
+        if (isFitted) other = load(view, {"camera.representation=traced"});
+        const LoadedScene& truth = other ? *other : variants.front();
         if (suite_.wantsFitErrors && isFitted && !recordFitErrors(view, truth, variants))
             return false;
         if (view.estimators.empty()) return true;
@@ -200,7 +203,6 @@ private:
         return true;
     }
 
-    /// The truth of a lens of glass is its exact trace.
     std::optional<Picture> referenceOf(const BenchView& view, const LoadedScene& truth) {
         const std::string title = titleOf(view.scene, view.camera) + ": reference";
         const BenchReferenceSettings settings{suite_.referenceEstimator, suite_.referenceSeconds,

@@ -44,8 +44,9 @@ std::string benchText(const std::vector<BenchResult>& results, const BenchRecord
                                 r.badSamples, r.configuration.scene, r.configuration.camera,
                                 r.configuration.estimator);
     for (const BenchFitError& e : records.fitErrors)
-        text += fmt::format("fit of {}, {}, {}: relMSE of the picture {:.2g} ({:.2g} – {:.2g})\n",
-                            e.scene, e.camera, e.variant, e.relMse, e.low, e.high);
+        text += fmt::format("fit of {}, {}{}{}: relMSE of the picture {:.2g} ({:.2g} – {:.2g})\n",
+                            e.scene, e.camera, e.variant.empty() ? "" : ", ", e.variant, e.relMse,
+                            e.low, e.high);
     for (const BenchReference& r : records.references)
         text += fmt::format("reference {}, {}: {} {} samples in {:.0f} s, relMSE {:.2g}\n", r.scene,
                             r.camera, r.estimator, r.samples, r.seconds, r.relMse);

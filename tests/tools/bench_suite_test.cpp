@@ -92,3 +92,14 @@ TEST_CASE("Bench suite: mistakes are named with their line") {
                             "\"a\"\n"),
               "another variant's"));
 }
+
+TEST_CASE("Bench suite: those in scenes/suites are right") {
+    const auto folder = std::filesystem::path(__FILE__).parent_path() / "../../scenes/suites";
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        CAPTURE(entry.path().string());
+        CHECK(!loadBenchSuite(entry.path()).views.empty());
+        ++count;
+    }
+    CHECK(count >= 4);
+}

@@ -11,10 +11,14 @@ namespace etendue {
 std::filesystem::path fitCacheDirectory() {
     const char* cache = std::getenv("XDG_CACHE_HOME");
     if (cache && std::filesystem::path(cache).is_absolute())
-        return std::filesystem::path(cache) / "etendue" / "fits";
+        return fitCacheIn(cache);
     const char* home = std::getenv("HOME");
-    if (home && *home) return std::filesystem::path(home) / ".cache" / "etendue" / "fits";
+    if (home && *home) return fitCacheIn(std::filesystem::path(home) / ".cache");
     return {};
+}
+
+std::filesystem::path fitCacheIn(const std::filesystem::path& cacheHome) {
+    return cacheHome / "etendue" / "fits";
 }
 
 std::filesystem::path fitCacheFile(const std::filesystem::path& directory, const FitKey& key) {

@@ -12,6 +12,9 @@ namespace etendue {
 /// Empty when the environment names neither.
 std::filesystem::path fitCacheDirectory();
 
+/// The same where XDG_CACHE_HOME is `cacheHome`.
+std::filesystem::path fitCacheIn(const std::filesystem::path& cacheHome);
+
 /// Where in `directory` the fit for `key` belongs.
 std::filesystem::path fitCacheFile(const std::filesystem::path& directory, const FitKey& key);
 

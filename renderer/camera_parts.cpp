@@ -11,7 +11,7 @@ namespace etendue {
 namespace {
 
 Transform placeCamera(const ConfigTable& table) {
-    const Vec3d from = vector3(table, "from"), to = vector3(table, "to");
+    const Vec3d from = place(table, "from"), to = place(table, "to");
     const Vec3d up = table.has("up") ? vector3(table, "up") : Vec3d{0, 1, 0};
     if (!(length(to - from) > 0.0)) table.fail("to", "must differ from 'from'");
     if (!(length(cross(up, to - from)) > 1e-9 * length(up) * length(to - from)))

@@ -17,13 +17,25 @@ namespace {
 
 constexpr float largestCoordinate = 1e18f;  // beyond 1.8e18 Embree aborts the process
 
+/// Of rays that stay within largestCoordinate in the space of each instance's mesh, too.
+float farthestReach(std::span<const Instance> instances) {
+    double reach = double{largestCoordinate};
+    for (const Instance& instance : instances) {
+        if (instance.isInWorldSpace) continue;
+        // Of three coordinates, and of the translation, that add up.
+        const Transform& t = instance.meshFromWorld;
+        const Vec3d sums = abs(t.x) + abs(t.y) + abs(t.z);
+        reach = std::min(reach, double{largestCoordinate} / maxComponent(sums) -
+                                    maxComponent(abs(instance.worldFromMesh.translation)));
+    }
+    return static_cast<float>(reach);
+}
+
 /// Fills `out`; false if Embree must not see it.
-bool setRay(RTCRay& out, const Ray& ray) {
+bool setRay(RTCRay& out, const Ray& ray, float reach) {
     const FloatLanes origin = lanesOf(ray.origin), direction = lanesOf(ray.direction);
     // Written so that NaN fails.
-    const auto isInside = [](FloatLanes v) {
-        return (v >= -largestCoordinate) & (v <= largestCoordinate);
-    };
+    const auto isInside = [reach](FloatLanes v) { return (v >= -reach) & (v <= reach); };
     const IntLanes inside = isInside(origin) & isInside(direction);
     if (!(inside[0] & inside[1] & inside[2]) || ray.direction == Vec3{} ||
         !(ray.maxDistance >= 0.0f))
@@ -76,6 +88,7 @@ struct Intersector::Embree {
     std::vector<RTCScene> meshScenes;  // one for each mesh that is placed more than once, else null
     std::span<const Mesh> meshes;
     std::span<const Instance> instances;
+    float reach = 0.0f;
 
     ~Embree() {
         for (const RTCScene s : meshScenes)
@@ -187,6 +200,7 @@ Intersector::Intersector(std::span<const Mesh> meshes, std::span<const Instance>
     throwOnError(embree_->device, "starting");
     embree_->meshes = meshes;
     embree_->instances = instances;
+    embree_->reach = farthestReach(instances);
     embree_->meshScenes.resize(meshes.size());
     std::vector<std::pair<RTCGeometry, std::uint32_t>> geometries;
     for (std::uint32_t i = 0; i < instances.size(); ++i) {
@@ -202,7 +216,7 @@ Intersector::~Intersector() = default;
 
 std::optional<RayHit> Intersector::closestHit(const Ray& ray) const {
     RTCRayHit query;
-    if (!setRay(query.ray, ray)) {
+    if (!setRay(query.ray, ray, embree_->reach)) {
         ++refusedRays_;
         return std::nullopt;
     }
@@ -225,7 +239,7 @@ std::optional<RayHit> Intersector::closestHit(const Ray& ray) const {
 
 bool Intersector::isOccluded(const Ray& ray) const {
     RTCRay query;
-    if (!setRay(query, ray)) {
+    if (!setRay(query, ray, embree_->reach)) {
         ++refusedRays_;
         return true;
     }

@@ -44,7 +44,9 @@ public:
     /// True if anything lies on the ray between its origin and maxDistance.
     bool isOccluded(const Ray& ray) const;
 
-    /// Rays that were not traced because they were not finite or beyond ±1e18: each is a defect.
+    /// Rays that were not traced because they were not finite or beyond ±1e18, in the world or in
+    /// the space of an instance's mesh: each is a defect, but for instances that shrink their mesh
+    /// so much that rays from so far cannot be followed there.
     std::uint64_t refusedRays() const { return refusedRays_; }
 
 private:

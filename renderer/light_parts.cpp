@@ -37,7 +37,7 @@ MakeLight environmentFrom(const ConfigTable& table, LoadingScene& loading) {
 }
 
 MakeLight spotFrom(const ConfigTable& table) {
-    const Vec3 position = toFloat(vector3(table, "position"));
+    const Vec3 position = toFloat(place(table, "position"));
     const Vec3 direction = unitVector(table, "direction");
     const Spectrum intensity = color(table, "intensity", Range::nonNegative());
     const auto outer = static_cast<float>(table.number("outer_angle", {0.01, 90.0}));
@@ -56,7 +56,7 @@ MakeLight lightFrom(const ConfigTable& table, LoadingScene& loading) {
         return [=](BoundingSphere scene) { return makeConstantLight(radiance, scene); };
     }
     if (type == "point") {
-        const Vec3 position = toFloat(vector3(table, "position"));
+        const Vec3 position = toFloat(place(table, "position"));
         const Spectrum intensity = color(table, "intensity", Range::nonNegative());
         return [=](BoundingSphere) { return makePointLight(position, intensity); };
     }

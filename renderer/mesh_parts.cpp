@@ -106,15 +106,31 @@ DressedMesh addModelFile(const std::filesystem::path& file, LoadingScene& loadin
     return addMesh(std::move(model.mesh), std::move(slots), loading);
 }
 
+// Written so that NaN fails.
+bool isNear(Vec3d p) {
+    return std::abs(p.x) <= farthestPlace && std::abs(p.y) <= farthestPlace &&
+           std::abs(p.z) <= farthestPlace;
+}
+bool isWithin(const Transform& t, double longest) {
+    return length(t.x) <= longest && length(t.y) <= longest && length(t.z) <= longest;
+}
+
+/// Rays are turned back into the mesh's own space, in floats.
+bool canBeTurnedBack(const Transform& worldFromMesh) {
+    constexpr double most = 1.000001e12;  // a single step's scale, and its rounding
+    return isWithin(worldFromMesh, most) && std::abs(worldFromMesh.determinant()) > 0.0 &&
+           isWithin(worldFromMesh.inverse(), most);
+}
+
 /// Every vertex must stay where float coordinates and Embree can handle it.
-void place(const DressedMesh& mesh, const Transform& worldFromMesh, const ConfigTable& table,
-           LoadingScene& loading) {
-    constexpr double largest = 1e15;
+void placeMesh(const DressedMesh& mesh, const Transform& worldFromMesh, const ConfigTable& table,
+               LoadingScene& loading) {
     for (const Vec3& p : loading.parts.meshes[mesh.index].positions) {
         const Vec3d world = worldFromMesh.point(toDouble(p));
-        if (!(maxComponent(abs(world)) <= largest))
-            table.fail("transform", "moves a vertex beyond 1e15 m");
+        if (!isNear(world)) table.fail("transform", "moves a vertex beyond 1e15 m");
     }
+    if (!canBeTurnedBack(worldFromMesh))
+        table.fail("transform", "stretches or shrinks the mesh by more than 1e12 times");
     loading.parts.placements.push_back({mesh.index, worldFromMesh, mesh.materials});
 }
 
@@ -178,7 +194,7 @@ void loadMeshes(const std::vector<ConfigTable>& meshes, const std::vector<Config
             names.push_back(name);
         }
         const Transform transform = loadTransform(table, "transform");
-        if (!table.boolean("hidden", false)) place(mesh, transform, table, loading);
+        if (!table.boolean("hidden", false)) placeMesh(mesh, transform, table, loading);
         table.finish();
     }
     for (const ConfigTable& table : instances) {
@@ -186,13 +202,15 @@ void loadMeshes(const std::vector<ConfigTable>& meshes, const std::vector<Config
         if (table.has("material"))
             for (const Material*& slot : mesh.materials)
                 slot = findMaterial(table, "material", loading);
-        place(mesh, loadTransform(table, "transform"), table, loading);
+        placeMesh(mesh, loadTransform(table, "transform"), table, loading);
         table.finish();
     }
 }
 
 void addModel(const std::filesystem::path& file, LoadingScene& loading) {
     const DressedMesh mesh = addModelFile(file, loading);
+    for (const Vec3& p : loading.parts.meshes[mesh.index].positions)
+        if (!isNear(toDouble(p))) throw InputError(file.string() + ": a vertex beyond 1e15 m");
     loading.parts.placements.push_back({mesh.index, {}, mesh.materials});
 }
 

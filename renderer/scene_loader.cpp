@@ -12,6 +12,8 @@ namespace etendue {
 namespace {
 
 constexpr int largestIncludeDepth = 16;
+/// Each time counted: files that each include the next one twice would double at every level.
+constexpr std::size_t mostFiles = 1000;
 
 /// The file and what it includes, as one document.
 Config loadWithIncludes(const std::filesystem::path& file,
@@ -21,8 +23,11 @@ Config loadWithIncludes(const std::filesystem::path& file,
     const ConfigTable root = config.root();
     if (depth > largestIncludeDepth)
         root.fail("include", "includes nest deeper than 16: does a file include itself?");
-    for (const std::filesystem::path& included : root.files("include"))
+    for (const std::filesystem::path& included : root.files("include")) {
+        if (files.size() >= mostFiles)
+            root.fail("include", "includes add up to more than 1000 files");
         config.merge(loadWithIncludes(included, files, depth + 1));
+    }
     return config;
 }
 

@@ -62,4 +62,11 @@ void loadLights(const std::vector<ConfigTable>& tables, LoadingScene& loading);
 
 Vec3d vector3(const ConfigTable& table, std::string_view key, Range range = Range::any());
 
+/// What may stand in a scene stands within this, m: floats and Embree can handle it, and what is
+/// added to it on the way.
+inline constexpr double farthestPlace = 1e15;
+inline Vec3d place(const ConfigTable& table, std::string_view key) {
+    return vector3(table, key, {-farthestPlace, farthestPlace});
+}
+
 }  // namespace etendue

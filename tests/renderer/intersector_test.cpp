@@ -95,6 +95,20 @@ TEST_CASE("Intersector: rays that are not finite are refused and counted") {
     CHECK(intersector.closestHit({{}, z}));
 }
 
+TEST_CASE("Intersector: rays too far to be followed into an instance that shrinks are refused") {
+    // In the mesh's space, a million million times the size, Embree would abort the process.
+    const LoadedScene loaded = sceneFromText(
+        "[[mesh]]\nshape = \"sphere\"\nname = \"s\"\n[[instance]]\nmesh = \"s\"\n"
+        "transform = [{scale = 1e-12}, {translate = [5, 0, 0]}]\n");
+    const Intersector& intersector = loaded.scene->intersector();
+    const Vec3 z{0, 0, -1};
+    CHECK_FALSE(intersector.closestHit({{0, 0, 1e9f}, z}));
+    CHECK(intersector.isOccluded({{0, 0, 1e9f}, z}));
+    CHECK(loaded.scene->refusedRays() == 2);
+    CHECK(intersector.closestHit({{0, 0, 1e5f}, z}));
+    CHECK(loaded.scene->refusedRays() == 2);
+}
+
 TEST_CASE("Intersector: a mirrored instance keeps its front side in front") {
     for (const char* transforms :
          {"transform = [{scale = [-1, 1, 1]}]", "transform = [{scale = -2}]"}) {

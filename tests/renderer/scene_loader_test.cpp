@@ -142,6 +142,22 @@ const std::vector<BadScene> badScenes = {
      "include = [\"none.toml\"]\n",
      {"scene.toml:1", "none.toml"},
      ExitCode::missingFile},
+    {"a camera farther than anything may be",
+     "[camera]\nfrom = [0, 0, 1e16]\nto = [0, 0, 0]\n",
+     {"scene.toml:2", "camera.from[2]", "from -1e+15 to 1e+15"}},
+    {"a point light farther than anything may be",
+     "[[light]]\ntype = \"point\"\nposition = [-1e16, 0, 0]\nintensity = [1, 1, 1]\n",
+     {"scene.toml:3", "light[0].position[0]", "from -1e+15 to 1e+15"}},
+    {"a mesh shrunk beyond what floats turn back",
+     "[[mesh]]\nshape = \"box\"\ntransform = [{scale = 1e-12}, {scale = 1e-12}]\n",
+     {"scene.toml:3", "mesh[0].transform", "more than 1e12 times"}},
+    {"a mesh shrunk to nothing",
+     "[[mesh]]\nshape = \"box\"\ntransform = [{scale = 1e-80}, {scale = 1e-80}]\n",
+     {"scene.toml:3", "mesh[0].transform"}},
+    {"a mesh flattened by what adds up",
+     "[[mesh]]\nshape = \"box\"\ntransform = [{scale = [1, 1, 1e-9]}, {rotate = [1, 0, 0, 90]}, "
+     "{scale = [1, 1e-9, 1]}]\n",
+     {"scene.toml:3", "mesh[0].transform"}},
     {"a scene that includes itself", "include = [\"scene.toml\"]\n", {"include"}},
     {"no TOML at all", "v 0 0 0\n", {"scene.toml:1"}},
 };
@@ -230,6 +246,13 @@ TEST_CASE("Scene loader: a light of no area at all is an error or no light, neve
     CHECK_THROWS_AS(loadScene(file, {{}, 1}), InputError);
 }
 
+TEST_CASE("Scene loader: a bare model that reaches farther than anything may is refused") {
+    const TemporaryFolder folder;
+    const auto file = folder.write("far.obj", "v 0 0 0\nv 1e16 0 0\nv 0 1e14 0\nf 1 2 3\n");
+    CHECK_THROWS_WITH_AS(loadScene(file, {{}, 1}), doctest::Contains("far.obj: a vertex beyond"),
+                         InputError);
+}
+
 TEST_CASE("Scene loader: includes add their tables, and overrides come last") {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder.path() / "parts");
@@ -246,6 +269,19 @@ TEST_CASE("Scene loader: includes add their tables, and overrides come last") {
     const auto point = loaded.scene->closestHit({{0, 1, 0}, {0, -1, 0}});
     REQUIRE(point);
     CHECK(point->material->bsdf->albedo({})[1] == 1.0f);
+}
+
+TEST_CASE("Scene loader: includes that double at every level are refused") {
+    const TemporaryFolder folder;
+    for (int i = 0; i < 12; ++i) {
+        const std::string next = "\"" + std::to_string(i + 1) + ".toml\"";
+        folder.write(std::to_string(i) + ".toml", "include = [" + next + ", " + next + "]\n");
+    }
+    folder.write("12.toml", "");
+    CHECK_THROWS_WITH_AS(loadScene(folder / "0.toml", {{}, 1}),
+                         doctest::Contains(".toml:1: include: includes add up to more than 1000"),
+                         InputError);
+    CHECK(loadScene(folder / "4.toml", {{}, 1}).scene != nullptr);  // 511 files
 }
 
 TEST_CASE("Scene loader: the hash follows the contents of every file and the overrides") {

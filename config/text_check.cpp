@@ -52,15 +52,26 @@ void checkUtf8(const Text& text) {
     }
 }
 
+/// In a multi-line string, behind the backslash at `at` and the blanks and line breaks that it
+/// takes away: toml++ 3.3 asks of what stands there whether it is a blank, too, and of some
+/// characters beyond ASCII does so with undefined behaviour.
+void checkBehindBackslash(const Text& text, std::size_t at) {
+    const std::size_t next = text.bytes.find_first_not_of(" \t\n\v\f\r", at + 1);
+    if (next != std::string_view::npos && !text.isAscii(next))
+        text.fail(next, "a character beyond ASCII right behind a backslash");
+}
+
 /// Past the string whose opening quote is at `at`; where it is not closed, its line's end or the
 /// text's.
-std::size_t skipString(std::string_view bytes, std::size_t at) {
+std::size_t skipString(const Text& text, std::size_t at) {
+    const std::string_view bytes = text.bytes;
     const char quote = bytes[at];
     const std::string threeQuotes(3, quote);
     const bool isMultiLine = bytes.substr(at, 3) == threeQuotes;
     at += isMultiLine ? 3 : 1;
     while (at < bytes.size()) {
         if (bytes[at] == '\\' && quote == '"') {
+            if (isMultiLine) checkBehindBackslash(text, at);
             at += 2;
         } else if (isMultiLine && bytes.substr(at, 3) == threeQuotes) {
             // One or two quotes more belong to the string: """a"""""
@@ -86,7 +97,7 @@ void checkStructure(const Text& text) {
         switch (text.bytes[at]) {
             case '"':
             case '\'':
-                at = skipString(text.bytes, at);
+                at = skipString(text, at);
                 continue;
             case '#':
                 at = std::min(text.bytes.find('\n', at), text.bytes.size());

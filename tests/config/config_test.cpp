@@ -97,6 +97,9 @@ TEST_CASE("Config: a text that is no document names the line and what is wrong")
         {"\n\nh\u00f6he = 1\n", "scene.toml:3: a character that only quotes may hold"},
         {"a = 1 \u00a0\n", "scene.toml:1: a character that only quotes may hold"},
         {"[\u2028\n", "scene.toml:1: a character that only quotes may hold"},
+        // And where toml++ 3.3 must not meet it.
+        {"a = \"\"\"b\\ \ufdbf\"\"\"", "scene.toml:1: a character beyond ASCII right behind"},
+        {"a = \"\"\"b\\\n \n  \ufdbf\"\"\"", "scene.toml:3: a character beyond ASCII right behind"},
         {"a = 1e999", "scene.toml:1: "},
         {"a = 99999999999999999999", "scene.toml:1: "},
         {std::string("a = 1\n\0b = 2\n", 13), "scene.toml:2: "},

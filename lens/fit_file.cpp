@@ -54,6 +54,13 @@ int wholeFrom(const Json& json, int lowest, int highest) {
     return static_cast<int>(number);
 }
 
+std::int64_t countFrom(const Json& json) {
+    if (!json.is_number_integer()) throw Refusal("a count is not whole");
+    const std::int64_t count = json.get<std::int64_t>();
+    if (count < 0) throw Refusal("a count is out of range");
+    return count;
+}
+
 Json jsonOf(const FitDomain& d) {
     return {{"sensor_half_size_mm", jsonOf(d.sensorHalfSizeMm)},
             {"image_radius_mm", jsonOf(d.imageRadiusMm)},
@@ -174,10 +181,10 @@ Json jsonOf(const FitErrors& e) {
             {"unsolved", e.unsolved}};
 }
 FitErrors errorsFrom(const Json& json) {
-    return {summaryFrom(json.at("pupil_mm")),       summaryFrom(json.at("direction_mrad")),
-            summaryFrom(json.at("sensor_um")),      summaryFrom(json.at("throughput_relative")),
-            summaryFrom(json.at("etendue")),        json.at("rays").get<std::int64_t>(),
-            json.at("unsolved").get<std::int64_t>()};
+    return {summaryFrom(json.at("pupil_mm")),  summaryFrom(json.at("direction_mrad")),
+            summaryFrom(json.at("sensor_um")), summaryFrom(json.at("throughput_relative")),
+            summaryFrom(json.at("etendue")),   countFrom(json.at("rays")),
+            countFrom(json.at("unsolved"))};
 }
 
 Json jsonOf(const RayCounts& c) {
@@ -190,7 +197,7 @@ Json jsonOf(const RayCounts& c) {
             {"folded_light", c.foldedLight}};
 }
 RayCounts countsFrom(const Json& json) {
-    const auto count = [&](const char* key) { return json.at(key).get<std::int64_t>(); };
+    const auto count = [&](const char* key) { return countFrom(json.at(key)); };
     return {count("drawn"),
             count("passed"),
             count("blocked"),

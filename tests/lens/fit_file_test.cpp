@@ -6,9 +6,11 @@
 #include <atomic>
 #include <chrono>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 #include "lens/fit_cache.h"
+#include "lens/hash.h"
 #include "tests/lens/fitted_lenses.h"
 
 namespace etendue {
@@ -188,6 +190,27 @@ TEST_CASE(
     CHECK(has(refusalOf([](LensFit& fit) { fit.domain.imageRadiusMm = 0.0; }), "domain"));
     refusalOf([](LensFit& fit) { fit.exit.groups[0].coefficients(0, 0) = std::nan(""); });
     refusalOf([](LensFit& fit) { fit.exit.scaling.waveScale = HUGE_VAL; });
+}
+
+TEST_CASE("Fit file: counts that are none are refused, whatever the checksum") {
+    const TemporaryDirectory directory;
+    const std::filesystem::path file = directory.path() / "fit.json";
+    const auto refusalOf = [&](const std::string& count) {
+        LensFit fit = someFit();
+        fit.training.drawn = 123456789;
+        std::string text = fitFileText(fit);
+        text.replace(text.find("123456789"), 9, count);
+        const std::size_t begin = text.find("\"fit\":") + 6, end = text.rfind(",\"format\"");
+        std::ostringstream checksum;
+        checksum << std::hex << fnv1a(text.substr(begin, end - begin));
+        write(file, "{\"checksum\":\"" + checksum.str() + "\"," + text.substr(begin - 6));
+        return readFitFile(file).refusal;
+    };
+    CHECK(refusalOf("12345").empty());
+    CHECK(refusalOf("4e+88").ends_with("a count is not whole"));
+    CHECK(refusalOf("0.5").ends_with("a count is not whole"));
+    CHECK(refusalOf("-1").ends_with("a count is out of range"));
+    CHECK(refusalOf("18446744073709551615").ends_with("a count is out of range"));
 }
 
 TEST_CASE("Fit file: fits in both forms, with a focus range and of two planes are read back") {

@@ -11,7 +11,7 @@ packages="g++ cmake ninja-build
     libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev libboost-dev
     node-d3-scale node-d3-shape node-d3-selection"
 test_packages="doctest-dev assimp-testmodels glmark2-data glslang-tools chromium nodejs npm python3"
-ci_packages="clang clang-format clang-tidy"
+ci_packages="clang libclang-rt-dev llvm clang-format clang-tidy"
 
 case "${1:-}" in
     "") ;;

@@ -40,22 +40,35 @@ bool isAbove(const ConfigTable& table, const char* key, double most) {
         return false;
     }
 }
+bool isAnyAbove(const ConfigTable& table, const char* key, double most) {
+    try {
+        for (const double number : table.numbers(key, 0, Range::any()))
+            if (number > most) return true;
+    } catch (const InputError&) {
+    }
+    return false;
+}
 
 /// Meshes of millions of triangles are legal, as far as the memory goes, and take as long as they
 /// take.
-bool isLarge(const std::string& text) {
-    try {
-        double triangles = 0;
-        for (const ConfigTable& mesh : Config::parse(text, "scene.toml").root().tables("mesh")) {
-            for (const char* key : {"segments", "minor_segments"})
-                if (isAbove(mesh, key, 64)) return true;
-            if (isAbove(mesh, "subdivisions", 32)) return true;
-            triangles += 4096;
-        }
-        return triangles > 32 * 4096;
-    } catch (const InputError&) {
-        return false;
-    }
+bool isLarge(const ConfigTable& root) {
+    const std::vector<ConfigTable> meshes = root.tables("mesh");
+    for (const ConfigTable& mesh : meshes)
+        if (isAbove(mesh, "segments", 64) || isAbove(mesh, "minor_segments", 64) ||
+            isAbove(mesh, "subdivisions", 32))
+            return true;
+    return meshes.size() > 32;
+}
+
+/// Sums of light and exposures that a float may not hold.
+bool isBright(const ConfigTable& root) {
+    constexpr double most = 1e9;
+    for (const ConfigTable& material : root.tables("material"))
+        if (isAnyAbove(material, "emission", most)) return true;
+    for (const ConfigTable& light : root.tables("light"))
+        for (const char* key : {"radiance", "intensity", "irradiance"})
+            if (isAnyAbove(light, key, most) || isAbove(light, "scale", most)) return true;
+    return isAbove(root.table("camera"), "exposure", 30.0);
 }
 
 }  // namespace
@@ -63,9 +76,11 @@ bool isLarge(const std::string& text) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const FuzzFolder folder = folderOfScenes();
     const std::string text(textOf(data, size));
-    if (namesAnotherFolder(text) || isLarge(text)) return 0;
+    if (namesAnotherFolder(text)) return 0;
+    const std::filesystem::path file = folder.write("scene.toml", text);
     try {
-        checkRender(folder.write("scene.toml", text));
+        const ConfigTable root = Config::load(file).root();
+        if (!isLarge(root)) checkRender(file, isBright(root));
     } catch (const InputError&) {
     }
     return 0;

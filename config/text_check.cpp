@@ -88,6 +88,13 @@ std::size_t skipString(const Text& text, std::size_t at) {
     return bytes.size();
 }
 
+/// Whether a quote at `at` opens a string. In the middle of a word, as in 2"é", it does not: there
+/// the text is malformed, and toml++ takes what follows for more of the word.
+bool opensString(std::string_view bytes, std::size_t at) {
+    constexpr std::string_view before = " \t\r\n=,.[{";
+    return at == 0 || before.find(bytes[at - 1]) != std::string_view::npos;
+}
+
 /// Brackets and dotted keys against `maxConfigDepth`, and nothing beyond ASCII but in strings and
 /// comments (TOML has none there; toml++ 3.3 meets it with undefined behaviour).
 void checkStructure(const Text& text) {
@@ -97,6 +104,7 @@ void checkStructure(const Text& text) {
         switch (text.bytes[at]) {
             case '"':
             case '\'':
+                if (!opensString(text.bytes, at)) break;
                 at = skipString(text, at);
                 continue;
             case '#':

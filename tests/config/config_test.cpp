@@ -100,6 +100,8 @@ TEST_CASE("Config: a text that is no document names the line and what is wrong")
         // And where toml++ 3.3 must not meet it.
         {"a = \"\"\"b\\ \ufdbf\"\"\"", "scene.toml:1: a character beyond ASCII right behind"},
         {"a = \"\"\"b\\\n \n  \ufdbf\"\"\"", "scene.toml:3: a character beyond ASCII right behind"},
+        {"a = 2\"\ufe7f\"", "scene.toml:1: a character that only quotes may hold"},
+        {"a = [2'\ufe7f']", "scene.toml:1: a character that only quotes may hold"},
         {"a = 1e999", "scene.toml:1: "},
         {"a = 99999999999999999999", "scene.toml:1: "},
         {std::string("a = 1\n\0b = 2\n", 13), "scene.toml:2: "},

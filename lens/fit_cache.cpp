@@ -10,8 +10,7 @@ namespace etendue {
 
 std::filesystem::path fitCacheDirectory() {
     const char* cache = std::getenv("XDG_CACHE_HOME");
-    if (cache && std::filesystem::path(cache).is_absolute())
-        return fitCacheIn(cache);
+    if (cache && std::filesystem::path(cache).is_absolute()) return fitCacheIn(cache);
     const char* home = std::getenv("HOME");
     if (home && *home) return fitCacheIn(std::filesystem::path(home) / ".cache");
     return {};

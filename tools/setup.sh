@@ -10,7 +10,8 @@ packages="g++ cmake ninja-build
     libembree-dev libopenimageio-dev libeigen3-dev libtinyobjloader-dev libtbb-dev
     libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev libxxhash-dev libboost-dev
     node-d3-scale node-d3-shape node-d3-selection"
-test_packages="doctest-dev assimp-testmodels glmark2-data glslang-tools chromium nodejs npm python3"
+test_packages="doctest-dev assimp-testmodels glmark2-data glslang-tools chromium nodejs npm python3
+    slurmctld slurmd slurm-client slurm-wlm-basic-plugins"
 ci_packages="clang libclang-rt-dev llvm clang-format clang-tidy"
 
 case "${1:-}" in

@@ -18,36 +18,6 @@ namespace fs = std::filesystem;
     throw std::system_error(error, std::generic_category(), file.string() + ": cannot write");
 }
 
-class Descriptor {
-public:
-    explicit Descriptor(int fd) : fd_(fd) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() {
-        if (isOpen()) ::close(fd_);
-    }
-
-    bool isOpen() const { return fd_ >= 0; }
-    int get() const { return fd_; }
-    /// As ::close, for those who want to know whether it worked.
-    int close() { return ::close(std::exchange(fd_, -1)); }
-
-private:
-    int fd_;
-};
-
-/// Removes what lies under a name in the end; after a rename that is nothing.
-class RemovalAtEnd {
-public:
-    explicit RemovalAtEnd(fs::path path) : path_(std::move(path)) {}
-    RemovalAtEnd(const RemovalAtEnd&) = delete;
-    RemovalAtEnd& operator=(const RemovalAtEnd&) = delete;
-    ~RemovalAtEnd() { ::unlink(path_.c_str()); }
-
-private:
-    fs::path path_;
-};
-
 /// Where a chain of symbolic links leads, whether or not anything is there yet. The caller knows
 /// that it is no loop.
 fs::path followLinks(const fs::path& file) {
@@ -60,18 +30,6 @@ fs::path followLinks(const fs::path& file) {
     return target;
 }
 
-void writeAll(int fd, const void* data, std::size_t size, const fs::path& file) {
-    const char* bytes = static_cast<const char*>(data);
-    while (size > 0) {
-        const ssize_t written = ::write(fd, bytes, size);
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) fail(file);
-        if (written == 0) fail(file, EIO);
-        bytes += written;
-        size -= static_cast<std::size_t>(written);
-    }
-}
-
 int syncRetrying(int fd) {
     int result = 0;
     do result = ::fsync(fd);
@@ -82,45 +40,100 @@ int syncRetrying(int fd) {
 /// Makes a rename in the folder durable. A folder that may not be read, or a file system without
 /// such a call (EINVAL), is no failure: the file itself is whole and in place.
 void syncFolder(const fs::path& folder, const fs::path& file) {
-    Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (!fd.isOpen() && errno == EACCES) return;
-    if (!fd.isOpen()) fail(file);
-    if (syncRetrying(fd.get()) != 0 && errno != EINVAL) fail(file);
+    const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0 && errno == EACCES) return;
+    if (fd < 0) fail(file);
+    const int error = syncRetrying(fd) != 0 ? errno : 0;
+    ::close(fd);
+    if (error != 0 && error != EINVAL) fail(file, error);
 }
 
-void writeInPlace(const fs::path& file, const void* data, std::size_t size) {
-    Descriptor fd(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
-    if (!fd.isOpen()) fail(file);
-    writeAll(fd.get(), data, size, file);
-    if (fd.close() != 0) fail(file);
+fs::path folderOf(const fs::path& file) {
+    return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+/// What the names of a file's temporaries begin with.
+std::string temporaryPrefix(const fs::path& target) {
+    return "." + target.filename().string() + ".tmp-";
 }
 
 }  // namespace
 
-void writeFileAtomically(const fs::path& file, const void* data, std::size_t size) {
+AtomicFile::AtomicFile(const fs::path& file) : file_(file) {
     struct stat old {};
     const bool exists = ::stat(file.c_str(), &old) == 0;
     if (!exists && errno != ENOENT) fail(file);
-    if (exists && !S_ISREG(old.st_mode)) return writeInPlace(file, data, size);
+    if (exists && !S_ISREG(old.st_mode)) {
+        descriptor_ = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+        if (descriptor_ < 0) fail(file);
+        return;
+    }
     // A rename would replace a read-only file without a word.
     if (exists && ::access(file.c_str(), W_OK) != 0) fail(file);
 
-    const fs::path target = followLinks(file);
-    const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
+    target_ = followLinks(file);
     const fs::path temporary =
-        folder / ("." + target.filename().string() + ".tmp-" + std::to_string(::getpid()));
+        folderOf(target_) / (temporaryPrefix(target_) + std::to_string(::getpid()));
     // Only a dead process can have left this name, since ours is the one with this id.
     if (::unlink(temporary.c_str()) != 0 && errno != ENOENT) fail(file);
-    Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode_t{0666}));
-    if (!fd.isOpen()) fail(file);
-    const RemovalAtEnd removal(temporary);
+    descriptor_ = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode_t{0666});
+    if (descriptor_ < 0) fail(file);
+    temporary_ = temporary;
+    if (exists && ::fchmod(descriptor_, old.st_mode & mode_t{0777}) != 0) {
+        const int error = errno;
+        ::close(descriptor_);
+        ::unlink(temporary_.c_str());
+        fail(file, error);
+    }
+}
 
-    if (exists && ::fchmod(fd.get(), old.st_mode & mode_t{0777}) != 0) fail(file);
-    writeAll(fd.get(), data, size, file);
-    if (syncRetrying(fd.get()) != 0) fail(file);
-    if (fd.close() != 0) fail(file);
-    if (::rename(temporary.c_str(), target.c_str()) != 0) fail(file);
-    syncFolder(folder, file);
+AtomicFile::~AtomicFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::write(const void* data, std::size_t size) {
+    const char* bytes = static_cast<const char*>(data);
+    while (size > 0) {
+        const ssize_t written = ::write(descriptor_, bytes, size);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) fail(file_);
+        if (written == 0) fail(file_, EIO);
+        bytes += written;
+        size -= static_cast<std::size_t>(written);
+    }
+}
+
+void AtomicFile::commit() { commitKeeping({}); }
+
+void AtomicFile::commitKeeping(const fs::path& previous) {
+    if (!temporary_.empty() && syncRetrying(descriptor_) != 0) fail(file_);
+    if (::close(std::exchange(descriptor_, -1)) != 0) fail(file_);
+    if (temporary_.empty()) return;
+    if (!previous.empty() && fs::exists(target_)) {
+        ::unlink(previous.c_str());
+        // A file system without links loses the moment between two renames, not the file.
+        if (::link(target_.c_str(), previous.c_str()) != 0 &&
+            ::rename(target_.c_str(), previous.c_str()) != 0)
+            fail(previous);
+    }
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(file_);
+    temporary_.clear();
+    syncFolder(folderOf(target_), file_);
+}
+
+void writeFileAtomically(const fs::path& file, const void* data, std::size_t size) {
+    AtomicFile atomic(file);
+    atomic.write(data, size);
+    atomic.commit();
+}
+
+void sweepTemporaries(const fs::path& file) {
+    const fs::path target = followLinks(file);
+    const std::string prefix = temporaryPrefix(target);
+    std::error_code ignored;  // what cannot be read or removed can stay
+    for (const fs::directory_entry& entry : fs::directory_iterator(folderOf(target), ignored))
+        if (entry.path().filename().string().starts_with(prefix)) fs::remove(entry.path(), ignored);
 }
 
 }  // namespace etendue

@@ -1,26 +1,44 @@
 #include "renderer/content_hash.h"
 
+#include <fmt/format.h>
 #include <xxhash.h>
 
-#include <array>
-#include <cstdio>
+#include <cstdint>
 #include <fstream>
-#include <memory>
+#include <new>
 
 #include "config/config.h"
 
 namespace etendue {
 
+struct ByteHasher::State {
+    XXH3_state_t* xxh3 = XXH3_createState();
+};
+
+ByteHasher::ByteHasher() : state_(std::make_unique<State>()) {
+    if (!state_->xxh3) throw std::bad_alloc();
+    XXH3_128bits_reset(state_->xxh3);
+}
+
+ByteHasher::~ByteHasher() { XXH3_freeState(state_->xxh3); }
+
+void ByteHasher::add(const void* bytes, std::size_t size) {
+    XXH3_128bits_update(state_->xxh3, bytes, size);
+}
+
+std::string ByteHasher::digest() const {
+    const XXH128_hash_t hash = XXH3_128bits_digest(state_->xxh3);
+    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
 std::string contentHash(const std::vector<std::filesystem::path>& files,
                         const std::vector<std::string>& strings) {
-    const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(),
-                                                                         &XXH3_freeState);
-    XXH3_128bits_reset(state.get());
+    ByteHasher hasher;
     // A length before each piece, so that no two lists run together to the same bytes.
     const auto add = [&](const std::string& bytes) {
         const std::uint64_t size = bytes.size();
-        XXH3_128bits_update(state.get(), &size, sizeof size);
-        XXH3_128bits_update(state.get(), bytes.data(), bytes.size());
+        hasher.add(&size, sizeof size);
+        hasher.add(bytes.data(), bytes.size());
     };
     for (const std::filesystem::path& file : files) {
         std::ifstream in(file, std::ios::binary);
@@ -29,12 +47,7 @@ std::string contentHash(const std::vector<std::filesystem::path>& files,
         add(bytes);
     }
     for (const std::string& s : strings) add(s);
-    const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
-    std::array<char, 33> text{};
-    std::snprintf(text.data(), text.size(), "%016llx%016llx",
-                  static_cast<unsigned long long>(hash.high64),
-                  static_cast<unsigned long long>(hash.low64));
-    return text.data();
+    return hasher.digest();
 }
 
 }  // namespace etendue

@@ -4,9 +4,8 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
-#include <functional>
 #include <stdexcept>
-#include <tuple>
+#include <utility>
 
 #include "renderer/colorimetry.h"
 
@@ -14,20 +13,7 @@ namespace etendue {
 
 namespace {
 
-void addTo(double* sums, Vec3 v) {
-    sums[0] += v.x;
-    sums[1] += v.y;
-    sums[2] += v.z;
-}
-
 Vec3 firstLanes(const Spectrum& s) { return {s[0], s[1], s[2]}; }
-
-bool sameWindow(const FrameWindow& a, const FrameWindow& b) {
-    const auto numbers = [](const FrameWindow& w) {
-        return std::tie(w.fullWidth, w.fullHeight, w.x, w.y, w.width, w.height);
-    };
-    return numbers(a) == numbers(b);
-}
 
 /// Zero where there was nothing to divide.
 double mean(double sum, double count) { return count > 0.0 ? sum / count : 0.0; }
@@ -52,6 +38,7 @@ Film::Slots Film::slotsFor(const FilmLayers& layers) {
         return slots.count - count;
     };
     slots.squares = take(layers.variance, 3);
+    slots.luminanceSquare = take(layers.luminanceVariance, 1);
     slots.hits = take(layers.albedo || layers.normal || layers.depth || layers.position, 1);
     slots.albedo = take(layers.albedo, 3);
     slots.normal = take(layers.normal, 3);
@@ -68,17 +55,41 @@ Film::Film(const FrameWindow& window, const FilmLayers& layers, FilmColor color)
     if (!isInside(window.x, window.width, window.fullWidth) ||
         !isInside(window.y, window.height, window.fullHeight))
         throw std::invalid_argument("film: the window must have pixels and lie in the full frame");
-    state_.sums.resize(static_cast<std::size_t>(window.width) *
-                       static_cast<std::size_t>(window.height) *
-                       static_cast<std::size_t>(slots_.count));
+    state_.sums.resize(pixelCount() * static_cast<std::size_t>(slots_.count));
 }
 
-double* Film::pixelSums(int x, int y) {
-    return state_.sums.data() + pixelNumber(x, y) * static_cast<std::size_t>(slots_.count);
+void Film::addTo(std::size_t slot, double value) {
+    if (!state_.sums.add(slot, value))
+        std::atomic_ref(state_.roundedTerms).fetch_add(1, std::memory_order_relaxed);
 }
 
-void Film::expectSplats() {
-    state_.splatSums.resize(3 * state_.sums.size() / static_cast<std::size_t>(slots_.count));
+void Film::addSquare(std::size_t slot, double value) { state_.sums.add(slot, value * value); }
+
+void Film::addTo(std::size_t slot, Vec3 v) {
+    for (int i = 0; i < 3; ++i) addTo(slot + static_cast<std::size_t>(i), double{v[i]});
+}
+
+double Film::luminanceOf(Vec3d value) const {
+    return color_ == FilmColor::xyz ? value.y
+                                    : 0.2126 * value.x + 0.7152 * value.y + 0.0722 * value.z;
+}
+
+void Film::expectSplats(std::uint64_t lightPathsPerSample) {
+    samplesPerLightPath_ = 1.0 / static_cast<double>(lightPathsPerSample);
+    state_.splatSums.resize(3 * pixelCount());
+    if (layers_.luminanceVariance) state_.sampleLuminance.resize(pixelCount());
+}
+
+void Film::addSplat(int x, int y, const Spectrum& value) {
+    const std::size_t pixel = pixelNumber(x, y);
+    bool isExact = true;
+    for (int i = 0; i < 3; ++i)
+        isExact = state_.splatSums.add(3 * pixel + static_cast<std::size_t>(i), double{value[i]}) &&
+                  isExact;
+    if (!isExact) std::atomic_ref(state_.roundedTerms).fetch_add(1, std::memory_order_relaxed);
+    if (!state_.sampleLuminance.empty())
+        state_.sampleLuminance[pixel] +=
+            static_cast<float>(samplesPerLightPath_ * luminanceOf({value[0], value[1], value[2]}));
 }
 
 bool Film::countBad() {
@@ -89,10 +100,16 @@ bool Film::countBad() {
 bool Film::add(int x, int y, const Spectrum& value) {
     if (!isUsable(value)) return countBad();
     const Vec3 color = firstLanes(value);
-    double* sums = pixelSums(x, y);
-    addTo(sums, color);
-    if (slots_.squares >= 0) {
-        for (int i = 0; i < 3; ++i) sums[slots_.squares + i] += double{color[i]} * color[i];
+    const std::size_t pixel = pixelNumber(x, y);
+    addTo(slotOf(pixel, 0), color);
+    if (slots_.squares >= 0)
+        for (int i = 0; i < 3; ++i) addSquare(slotOf(pixel, slots_.squares + i), double{color[i]});
+    if (slots_.luminanceSquare >= 0) {
+        const double luminance = luminanceOf(toDouble(color));
+        if (state_.sampleLuminance.empty())
+            addSquare(slotOf(pixel, slots_.luminanceSquare), luminance);
+        else
+            state_.sampleLuminance[pixel] += static_cast<float>(luminance);
     }
     return true;
 }
@@ -102,73 +119,131 @@ bool Film::addFeatures(int x, int y, const FilmFeatures& features) {
     if (!isUsable(features.albedo) || !isFinite(features.normal) || !isFinite(features.position) ||
         !std::isfinite(features.depth))
         return countBad();
-    double* sums = pixelSums(x, y);
-    if (slots_.hits >= 0) sums[slots_.hits] += 1.0;
-    if (slots_.albedo >= 0) addTo(sums + slots_.albedo, albedo);
-    if (slots_.normal >= 0) addTo(sums + slots_.normal, features.normal);
-    if (slots_.depth >= 0) sums[slots_.depth] += features.depth;
-    if (slots_.position >= 0) addTo(sums + slots_.position, features.position);
+    const auto at = [this, pixel = pixelNumber(x, y)](int slot) { return slotOf(pixel, slot); };
+    if (slots_.hits >= 0) addTo(at(slots_.hits), 1.0);
+    if (slots_.albedo >= 0) addTo(at(slots_.albedo), albedo);
+    if (slots_.normal >= 0) addTo(at(slots_.normal), features.normal);
+    if (slots_.depth >= 0) addTo(at(slots_.depth), double{features.depth});
+    if (slots_.position >= 0) addTo(at(slots_.position), features.position);
     return true;
 }
 
-void Film::merge(const Film& other) {
-    if (!sameWindow(window_, other.window_) || layers_ != other.layers_ || color_ != other.color_)
-        throw std::invalid_argument("film: merged renders must share window and layers");
-    std::transform(state_.sums.begin(), state_.sums.end(), other.state_.sums.begin(),
-                   state_.sums.begin(), std::plus<>());
-    if (!other.state_.splatSums.empty()) expectSplats();
-    std::transform(other.state_.splatSums.begin(), other.state_.splatSums.end(),
-                   state_.splatSums.begin(), state_.splatSums.begin(), std::plus<>());
-    state_.samples += other.state_.samples;
-    state_.lightPaths += other.state_.lightPaths;
-    state_.badSamples += other.state_.badSamples;
+void Film::expectUnfinishedSample() { state_.extraSamples.resize(pixelCount()); }
+
+void Film::finishSample(int firstRow, int endRow) {
+    const auto width = static_cast<std::size_t>(window_.width);
+    const std::size_t first = static_cast<std::size_t>(firstRow) * width,
+                      end = static_cast<std::size_t>(endRow) * width;
+    if (!state_.extraSamples.empty())
+        std::fill(state_.extraSamples.begin() + static_cast<std::ptrdiff_t>(first),
+                  state_.extraSamples.begin() + static_cast<std::ptrdiff_t>(end), std::uint16_t{0});
+    if (state_.sampleLuminance.empty()) return;
+    for (std::size_t pixel = first; pixel < end; ++pixel) {
+        const float luminance = std::exchange(state_.sampleLuminance[pixel], 0.0f);
+        addSquare(slotOf(pixel, slots_.luminanceSquare), luminance);
+    }
+}
+
+void Film::checkSize(const FilmState& other) const {
+    const auto fits = [](std::size_t size, std::size_t expected) {
+        return size == 0 || size == expected;
+    };
+    if (other.sums.size() != state_.sums.size() || other.sums.rests.size() != other.sums.size() ||
+        !fits(other.splatSums.size(), 3 * pixelCount()) ||
+        other.splatSums.rests.size() != other.splatSums.size() ||
+        !fits(other.extraSamples.size(), pixelCount()) ||
+        !fits(other.sampleLuminance.size(), layers_.luminanceVariance ? pixelCount() : 0))
+        throw std::invalid_argument("film: the state is of another window or of other layers");
+}
+
+void Film::merge(const FilmState& other) {
+    checkSize(other);
+    const auto addAll = [&](ExactSums& to, const ExactSums& from) {
+        to.resize(std::max(to.size(), from.size()));
+        for (std::size_t i = 0; i < from.size(); ++i)
+            if (!to.add(i, from.sums[i], from.rests[i])) ++state_.roundedTerms;
+    };
+    addAll(state_.sums, other.sums);
+    addAll(state_.splatSums, other.splatSums);
+    if (!other.extraSamples.empty()) expectUnfinishedSample();
+    for (std::size_t pixel = 0; pixel < other.extraSamples.size(); ++pixel)
+        state_.extraSamples[pixel] =
+            static_cast<std::uint16_t>(state_.extraSamples[pixel] + other.extraSamples[pixel]);
+    for (std::size_t pixel = 0; pixel < other.sampleLuminance.size(); ++pixel)
+        addSquare(slotOf(pixel, slots_.luminanceSquare), other.sampleLuminance[pixel]);
+    state_.samples += other.samples;
+    state_.lightPaths += other.lightPaths;
+    state_.badSamples += other.badSamples;
+    state_.roundedTerms += other.roundedTerms;
 }
 
 void Film::restore(FilmState state) {
-    if (state.sums.size() != state_.sums.size())
-        throw std::invalid_argument("film: the saved state is of another size");
+    checkSize(state);
     state_ = std::move(state);
 }
 
+double Film::sampleCount(std::size_t pixel) const {
+    const std::uint64_t extra = state_.extraSamples.empty() ? 0 : state_.extraSamples[pixel];
+    return static_cast<double>(state_.samples + extra);
+}
+
+Vec3d Film::meanColor(std::size_t pixel) const {
+    const auto three = [](const ExactSums& sums, std::size_t i) {
+        return Vec3d{sums[i], sums[i + 1], sums[i + 2]};
+    };
+    Vec3d value = three(state_.sums, slotOf(pixel, 0)) * mean(1.0, sampleCount(pixel));
+    if (!state_.splatSums.empty())
+        value +=
+            three(state_.splatSums, 3 * pixel) * mean(1.0, static_cast<double>(state_.lightPaths));
+    return value;
+}
+
+double Film::luminance(std::size_t pixel) const { return luminanceOf(meanColor(pixel)); }
+
+double Film::luminanceVariance(std::size_t pixel) const {
+    const double n = sampleCount(pixel);
+    return varianceOfMean(n * luminance(pixel), state_.sums[slotOf(pixel, slots_.luminanceSquare)],
+                          n);
+}
+
 std::vector<ExrChannels> Film::channels() const {
-    const auto stride = static_cast<std::size_t>(slots_.count);
     std::vector<ExrChannels> result;
-    /// `value` maps a pixel's sums and the channel's number to the channel's value.
+    /// `value` maps a pixel and the channel's number to the channel's value.
     const auto addImage = [&](std::vector<std::string> names, const auto& value) {
         ExrChannels image{std::move(names), {}};
         const int count = static_cast<int>(image.names.size());
-        image.pixels.reserve(state_.sums.size() / stride * image.names.size());
-        for (std::size_t p = 0; p < state_.sums.size(); p += stride)
+        image.pixels.reserve(pixelCount() * image.names.size());
+        for (std::size_t pixel = 0; pixel < pixelCount(); ++pixel)
             for (int i = 0; i < count; ++i)
-                image.pixels.push_back(static_cast<float>(value(&state_.sums[p], i)));
+                image.pixels.push_back(static_cast<float>(value(pixel, i)));
         result.push_back(std::move(image));
     };
-    const auto n = static_cast<double>(state_.samples);
-    const auto overSamples = [n](int slot) {
-        return [=](const double* sums, int i) { return mean(sums[slot + i], n); };
+    const auto sum = [&](std::size_t pixel, int slot) { return state_.sums[slotOf(pixel, slot)]; };
+    const auto overSamples = [&](int slot) {
+        return [&, slot](std::size_t pixel, int i) {
+            return mean(sum(pixel, slot + i), sampleCount(pixel));
+        };
     };
-    const auto overHits = [hits = slots_.hits](int slot) {
-        return [=](const double* sums, int i) { return mean(sums[slot + i], sums[hits]); };
+    const auto overHits = [&](int slot) {
+        return [&, slot](std::size_t pixel, int i) {
+            return mean(sum(pixel, slot + i), sum(pixel, slots_.hits));
+        };
     };
 
-    const auto lightPaths = static_cast<double>(state_.lightPaths);
-    addImage({"R", "G", "B"}, [&](const double* sums, int channel) {
-        Vec3d value = Vec3d{sums[0], sums[1], sums[2]} * mean(1.0, n);
-        if (!state_.splatSums.empty()) {
-            const double* splats =
-                &state_
-                     .splatSums[3 * (static_cast<std::size_t>(sums - state_.sums.data()) / stride)];
-            value += Vec3d{splats[0], splats[1], splats[2]} * mean(1.0, lightPaths);
-        }
-        return rgbOf(color_, value)[channel];
+    addImage({"R", "G", "B"}, [&](std::size_t pixel, int channel) {
+        return rgbOf(color_, meanColor(pixel))[channel];
     });
     if (layers_.variance)
         addImage(color_ == FilmColor::xyz
                      ? std::vector<std::string>{"variance.X", "variance.Y", "variance.Z"}
                      : std::vector<std::string>{"variance.R", "variance.G", "variance.B"},
-                 [&](const double* sums, int i) {
-                     return varianceOfMean(sums[i], sums[slots_.squares + i], n);
+                 [&](std::size_t pixel, int i) {
+                     return varianceOfMean(sum(pixel, i), sum(pixel, slots_.squares + i),
+                                           sampleCount(pixel));
                  });
+    // Of a spectral film that is one of the three above.
+    if (layers_.luminanceVariance && !(layers_.variance && color_ == FilmColor::xyz))
+        addImage({"variance.Y"}, [&](std::size_t pixel, int) { return luminanceVariance(pixel); });
     if (layers_.albedo) addImage({"albedo.R", "albedo.G", "albedo.B"}, overSamples(slots_.albedo));
     if (layers_.normal) addImage({"normal.X", "normal.Y", "normal.Z"}, overHits(slots_.normal));
     if (layers_.depth) addImage({"depth.Z"}, overHits(slots_.depth));

@@ -7,13 +7,14 @@
 #include <limits>
 #include <vector>
 
+#include "renderer/exact_sums.h"
 #include "renderer/image_io.h"
 #include "renderer/spectrum.h"
 #include "renderer/vec.h"
 
 namespace etendue {
 
-/// Auxiliary images, recorded only when asked for. Beauty alone takes 24 bytes a pixel. Normal,
+/// Auxiliary images, recorded only when asked for. Beauty alone takes 36 bytes a pixel. Normal,
 /// depth and position are means over those samples that meet something, and zero where none does:
 /// image files ought not to hold infinities.
 struct FilmLayers {
@@ -23,6 +24,7 @@ struct FilmLayers {
     bool position = false;
     bool variance = false;  // of the pixel's mean, estimated from the spread of its samples; of a
                             // spectral film that of X, Y and Z
+    bool luminanceVariance = false;  // the same of the luminance, splats included
 
     friend bool operator==(const FilmLayers&, const FilmLayers&) = default;
 };
@@ -37,11 +39,21 @@ struct FilmFeatures {
 
 /// All that a film remembers; write it down and a render can go on elsewhere.
 struct FilmState {
-    std::vector<double> sums;       // pixel after pixel of the window, row by row
-    std::vector<double> splatSums;  // three a pixel; empty when nothing is splatted
+    ExactSums sums;       // pixel after pixel of the window, row by row
+    ExactSums splatSums;  // three a pixel; empty when nothing is splatted
     std::uint64_t samples = 0;
     std::uint64_t lightPaths = 0;  // of the whole frame, not of the window alone
     std::uint64_t badSamples = 0;
+    std::uint64_t roundedTerms = 0;  // of the pictures' sums: 0 says that they are exact
+
+    /// Of a sample that is not finished yet, how much of the frame is (see render()).
+    std::uint64_t unfinishedParts = 0;
+    /// For each pixel, its samples beyond `samples`: 1 where an unfinished one is done, or more
+    /// where several such renders were merged. Empty as long as there was none.
+    std::vector<std::uint16_t> extraSamples;
+    /// The luminance that the unfinished sample has brought to each pixel; empty unless light is
+    /// splatted and its variance wanted.
+    std::vector<float> sampleLuminance;
 };
 
 /// What a film's sums are: R, G, B, or of a spectral render X, Y, Z, which are never negative, as
@@ -73,37 +85,56 @@ public:
     /// What that sample met; not called for one that met nothing. As for add(), a value that is not
     /// finite is counted and left out.
     bool addFeatures(int x, int y, const FilmFeatures& features);
-    /// From now on light is splatted. To be called before addSplat.
-    void expectSplats();
+    /// From now on light is splatted, by so many light paths of the whole frame in each sample. To
+    /// be called before addSplat.
+    void expectSplats(std::uint64_t lightPathsPerSample);
     /// Adds light that a light path brought to pixel (x, y) of the window: the film holds the mean
     /// over all light paths. The value must be finite and not negative (isUsable).
-    void addSplat(int x, int y, const Spectrum& value) {
-        double* sums = state_.splatSums.data() + 3 * pixelNumber(x, y);
-        for (int i = 0; i < 3; ++i) sums[i] += value[i];
-    }
+    void addSplat(int x, int y, const Spectrum& value);
     /// Has the pixel brought near, if it is one of the window's, for what will be added soon.
     void expectSplat(int x, int y) const {
         if (x < window_.x || x - window_.x >= window_.width || y < window_.y ||
             y - window_.y >= window_.height)
             return;
-        __builtin_prefetch(state_.splatSums.data() + 3 * pixelNumber(x, y), 1);
+        const std::size_t i = 3 * pixelNumber(x, y);
+        __builtin_prefetch(state_.splatSums.sums.data() + i, 1);
+        __builtin_prefetch(state_.splatSums.rests.data() + i, 1);
     }
     void addLightPaths(std::uint64_t count) { state_.lightPaths += count; }
     bool countBad();
     /// Every pixel of the window has had `count` more samples: the means' divisor.
     void addSamples(std::uint64_t count) { state_.samples += count; }
 
-    /// Adds another render of the same window and layers. Throws std::invalid_argument if it is
-    /// not.
-    void merge(const Film& other);
-    /// Takes up a state of the same window and layers. Throws std::invalid_argument if its size
-    /// shows that it is not.
+    /// A sample is taken part of the frame by part: room to count them, pixel by pixel.
+    void expectUnfinishedSample();
+    /// Pixel (x, y) has had its share of the unfinished sample.
+    void countUnfinished(int x, int y) { ++state_.extraSamples[pixelNumber(x, y)]; }
+    /// So many parts of it are done.
+    void setUnfinishedParts(std::uint64_t parts) { state_.unfinishedParts = parts; }
+    /// Every pixel has had the sample, and all that is splatted is there. The rows (from the
+    /// window's top) of one call are one thread's.
+    void finishSample(int firstRow, int endRow);
+
+    /// Adds another render of the same window, layers and color, if by other samples. Throws
+    /// std::invalid_argument if its size shows that it is not.
+    void merge(const FilmState& other);
+    /// Takes up such a state in place of its own. Throws std::invalid_argument as merge() does.
     void restore(FilmState state);
 
-    /// Images of the means: R, G, B first, then each layer asked for: variance.R …, albedo.R …,
-    /// normal.X …, depth.Z, position.X …. Zero before the first sample; the variance, before the
-    /// second.
+    /// Images of the means: R, G, B first, then each layer asked for: variance.R …, variance.Y,
+    /// albedo.R …, normal.X …, depth.Z, position.X …. Zero before the first sample; the variance,
+    /// before the second.
     std::vector<ExrChannels> channels() const;
+    /// Of a pixel's mean, with splats, by its place in the window, row by row.
+    double luminance(std::size_t pixel) const;
+    /// The variance of that mean. Needs FilmLayers::luminanceVariance.
+    double luminanceVariance(std::size_t pixel) const;
+    std::size_t pixelCount() const {
+        return static_cast<std::size_t>(window_.width) * static_cast<std::size_t>(window_.height);
+    }
+
+    /// How many sums a pixel has in FilmState::sums.
+    static int sumsPerPixel(const FilmLayers& layers) { return slotsFor(layers).count; }
 
     const FrameWindow& window() const { return window_; }
     const FilmLayers& layers() const { return layers_; }
@@ -116,7 +147,8 @@ public:
 private:
     /// Where in a pixel's run of sums a layer's begin, or −1. Beauty begins at 0.
     struct Slots {
-        int squares = -1, albedo = -1, hits = -1, normal = -1, depth = -1, position = -1;
+        int squares = -1, luminanceSquare = -1, albedo = -1, hits = -1, normal = -1, depth = -1,
+            position = -1;
         int count = 3;
     };
     static Slots slotsFor(const FilmLayers& layers);
@@ -127,13 +159,28 @@ private:
         return static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
                static_cast<std::size_t>(x - window_.x);
     }
-    double* pixelSums(int x, int y);
+    /// Where a pixel's sum lies.
+    std::size_t slotOf(std::size_t pixel, int slot) const {
+        return pixel * static_cast<std::size_t>(slots_.count) + static_cast<std::size_t>(slot);
+    }
+    /// Adds to a sum, or to three.
+    void addTo(std::size_t slot, Vec3 v);
+    void addTo(std::size_t slot, double value);
+    /// Squares of small samples have to be rounded beside others: no picture's sum is, by that.
+    void addSquare(std::size_t slot, double value);
+    double luminanceOf(Vec3d value) const;
+    /// The pixel's camera samples.
+    double sampleCount(std::size_t pixel) const;
+    /// The mean over samples and that over light paths, in the film's own colors.
+    Vec3d meanColor(std::size_t pixel) const;
+    void checkSize(const FilmState& other) const;
 
     FrameWindow window_;
     FilmLayers layers_;
     FilmColor color_;
     Slots slots_;
     FilmState state_;
+    double samplesPerLightPath_ = 0.0;
 };
 
 }  // namespace etendue

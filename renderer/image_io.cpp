@@ -329,8 +329,8 @@ std::optional<ExrChannels> readExrChannels(const std::filesystem::path& file,
     });
 }
 
-void writeExr(const std::filesystem::path& file, const FrameWindow& window,
-              const std::vector<ExrChannels>& layers, const Metadata& metadata) {
+Bytes encodeExr(const std::filesystem::path& file, const FrameWindow& window,
+                const std::vector<ExrChannels>& layers, const Metadata& metadata) {
     checkLayers(window, layers);
     const OIIO::ImageSpec spec = exrSpec(window, layers, metadata);
     const auto width = static_cast<std::size_t>(window.width);
@@ -345,8 +345,14 @@ void writeExr(const std::filesystem::path& file, const FrameWindow& window,
             }
         return row.data();
     };
-    const Bytes bytes = encode("openexr", spec, file, interleave);
+    Bytes bytes = encode("openexr", spec, file, interleave);
     checkMetadata(bytes, metadata);
+    return bytes;
+}
+
+void writeExr(const std::filesystem::path& file, const FrameWindow& window,
+              const std::vector<ExrChannels>& layers, const Metadata& metadata) {
+    const Bytes bytes = encodeExr(file, window, layers, metadata);
     writeFileAtomically(file, bytes.data(), bytes.size());
 }
 

@@ -56,7 +56,14 @@ using Metadata = std::map<std::string, MetadataValue>;
 struct FrameWindow {
     int fullWidth = 0, fullHeight = 0;
     int x = 0, y = 0, width = 0, height = 0;
+
+    friend bool operator==(const FrameWindow&, const FrameWindow&) = default;
 };
+
+/// The bytes of the file that writeExr() writes.
+std::vector<unsigned char> encodeExr(const std::filesystem::path& file, const FrameWindow& window,
+                                     const std::vector<ExrChannels>& layers,
+                                     const Metadata& metadata);
 
 /// 32-bit float, ZIP, bit for bit (NaN and infinity too), through writeFileAtomically, whose errors
 /// it throws. Equal arguments give equal bytes: there is no date but a capDate in `metadata`.

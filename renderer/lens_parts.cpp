@@ -4,9 +4,11 @@
 #include "lens/axial_beam.h"
 #include "lens/fit_cache.h"
 #include "lens/fit_domain.h"
+#include "lens/fit_file.h"
 #include "lens/outer_pupil.h"
 #include "lens/polynomial_lens.h"
 #include "renderer/camera_focus.h"
+#include "renderer/content_hash.h"
 #include "renderer/lens_terms.h"
 #include "renderer/scene_parts.h"
 
@@ -145,7 +147,7 @@ std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, CameraSettin
         ", " + std::to_string(fit.settings.terms) + " terms, degree " +
         std::to_string(fit.settings.degree);
     loaded.fit = FitSummary{fit.settings.terms, fit.settings.degree, fit.errors.directionMrad.rms,
-                            fit.errors.sensorMicrometres.rms};
+                            fit.errors.sensorMicrometres.rms, contentHash({}, {fitFileText(fit)})};
     return std::make_shared<PolynomialLens>(prescription, fit,
                                             Aperture(domain.apertureRadiusMm, settings.blades));
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <mutex>
 #include <span>
+#include <stdexcept>
 
 #include "renderer/parallel.h"
 #include "renderer/splats.h"
@@ -14,16 +15,24 @@ namespace {
 
 constexpr int tileSize = 16;
 constexpr std::size_t badSamplesKept = 16;
-/// Long enough to keep all threads busy to the end of a pass, short enough to stop when asked.
-constexpr double secondsPerPass = 0.5;
+/// Long enough to keep all threads busy to the end of a batch, short enough to stop when asked.
+constexpr double secondsPerBatch = 0.5;
 /// What one task takes of a tile: little, so that threads finish together.
 constexpr int rowsPerPart = 4;
 /// Of splats in memory at a time: of 8192 samples for two threads. Enough that threads seldom wait
 /// for each other.
 constexpr std::size_t partsPerThread = 64, fewestPartsPerThread = 8;
+/// In the first batch, when nobody knows yet how long a part takes.
+constexpr std::size_t firstPartsPerThread = 16;
 
 struct Part {
     int x, y, width, height;  // pixels of the full frame
+};
+
+/// Parts `beginPart` … `endPart − 1` of one sample, or all parts of one or more.
+struct Batch {
+    std::uint32_t firstSample, sampleCount;
+    std::size_t beginPart, endPart;
 };
 
 /// Tile by tile, each from its top: neighbours see the same parts of a scene.
@@ -66,11 +75,13 @@ struct Recorder {
 
     /// Adds what the samples of these pixels bring to them, if they belong to the film, and records
     /// what they splat, if there is a list.
-    void takePart(const Part& part, std::uint32_t index, SplatList* splats) {
+    void takePart(const Part& part, std::uint32_t index, SplatList* splats, bool isUnfinished) {
         static thread_local Sample sample;
         for (int y = part.y; y < part.y + part.height; ++y)
-            for (int x = part.x; x < part.x + part.width; ++x)
+            for (int x = part.x; x < part.x + part.width; ++x) {
                 takeSample(x, y, index, sample, splats);
+                if (isUnfinished && contains(film.window(), x, y)) film.countUnfinished(x, y);
+            }
     }
 
     void takeSample(int x, int y, std::uint32_t index, Sample& sample, SplatList* splats) {
@@ -104,37 +115,45 @@ struct Recorder {
     }
 };
 
-/// Samples `first` … `first + count − 1` of every pixel.
-void takePass(Recorder& recorder, const std::vector<Part>& parts, std::uint32_t first,
-              std::uint32_t count, int threads) {
+/// Part by part, all samples of one by the same thread.
+void takeBatch(Recorder& recorder, std::span<const Part> parts, const Batch& batch, int threads,
+               bool isUnfinished) {
     parallelFor(parts.size(), threads, [&](std::size_t i) {
-        for (std::uint32_t s = first; s < first + count; ++s)
-            recorder.takePart(parts[i], s, nullptr);
+        for (std::uint32_t s = 0; s < batch.sampleCount; ++s)
+            recorder.takePart(parts[i], batch.firstSample + s, nullptr, isUnfinished);
+    });
+}
+
+/// The film's share of what is done when all of a frame has had a sample.
+void finishSample(Film& film, int threads) {
+    const int height = film.window().height;
+    constexpr int rows = 64;
+    parallelFor(static_cast<std::size_t>((height + rows - 1) / rows), threads, [&](std::size_t i) {
+        const int first = static_cast<int>(i) * rows;
+        film.finishSample(first, std::min(first + rows, height));
     });
 }
 
 /// The same with splats, of as many parts at a time as there are lists. They are added sample by
-/// sample, part by part: the same bits, whatever the pass, the lists and the thread.
-void takeSplattingPass(Recorder& recorder, const std::vector<Part>& parts, std::uint32_t first,
-                       std::uint32_t count, int threads, std::span<SplatList> lists) {
+/// sample, part by part, whatever the batch, the lists and the thread.
+void takeSplattingBatch(Recorder& recorder, std::span<const Part> parts, const Batch& batch,
+                        int threads, std::span<SplatList> lists, bool isUnfinished) {
     const std::size_t divisions = (parts.size() + lists.size() - 1) / lists.size();
     const std::size_t size = (parts.size() + divisions - 1) / divisions;
-    const auto samples = static_cast<std::uint32_t>(lists.size() / size);  // at a time
-    for (std::uint32_t s = first; s < first + count; s += samples)
+    for (std::uint32_t s = 0; s < batch.sampleCount; ++s) {
         for (std::size_t begin = 0; begin < parts.size(); begin += size) {
-            const std::size_t partCount = std::min(size, parts.size() - begin);
-            const std::uint32_t sampleCount = std::min(samples, first + count - s);
-            parallelFor(partCount, threads, [&](std::size_t i) {
-                for (std::uint32_t j = 0; j < sampleCount; ++j) {
-                    SplatList& list = lists[j * partCount + i];
-                    list.clear();
-                    recorder.takePart(parts[begin + i], s + j, &list);
-                    list.sortByBand();
-                }
+            const std::size_t count = std::min(size, parts.size() - begin);
+            parallelFor(count, threads, [&](std::size_t i) {
+                lists[i].clear();
+                recorder.takePart(parts[begin + i], batch.firstSample + s, &lists[i], isUnfinished);
+                lists[i].sortByBand();
             });
-            addSplats(lists.first(sampleCount * partCount), recorder.view.filter, threads,
-                      recorder.film, recorder.images);
+            addSplats(lists.first(count), recorder.view.filter, threads, recorder.film,
+                      recorder.images);
         }
+        // The last of several; of the last one whoever knows that it is finished says so.
+        if (s + 1 < batch.sampleCount) finishSample(recorder.film, threads);
+    }
 }
 
 /// The more light paths a sample has, the fewer lists.
@@ -157,56 +176,91 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// How many samples per pixel the next pass takes, at the speed so far.
-std::uint32_t passSize(std::uint32_t done, std::uint32_t target, double seconds, double limit) {
-    if (done == 0) return 1;
-    const double secondsPerSample = std::max(seconds / done, 1e-9);
-    const double budget = std::min(secondsPerPass, limit - seconds);
-    const double fitting = std::max(1.0, budget / secondsPerSample);
-    return std::min(target - done, static_cast<std::uint32_t>(std::min(fitting, 1e6)));
+/// What comes next, at the speed so far.
+Batch nextBatch(std::uint32_t firstSample, std::uint32_t samplesLeft, std::size_t beginPart,
+                std::size_t partCount, double partsPerSecond, double secondsLeft, int threads) {
+    const auto threadCount = static_cast<double>(threads);
+    const double fitting = partsPerSecond > 0.0
+                               ? std::max(partsPerSecond * secondsPerBatch, threadCount)
+                               : threadCount * static_cast<double>(firstPartsPerThread);
+    const auto count = static_cast<double>(partCount);
+    if (beginPart > 0 || fitting < count) {
+        const double left = static_cast<double>(partCount - beginPart);
+        return {firstSample, 1, beginPart,
+                beginPart + static_cast<std::size_t>(std::min(fitting, left))};
+    }
+    const double samples =
+        partsPerSecond > 0.0 ? std::min(fitting, partsPerSecond * secondsLeft) / count : 1.0;
+    return {firstSample,
+            static_cast<std::uint32_t>(std::clamp(samples, 1.0, static_cast<double>(samplesLeft))),
+            0, partCount};
+}
+
+/// Light paths are those of the frame's pixels.
+std::uint64_t pixelsOf(std::span<const Part> parts) {
+    std::uint64_t count = 0;
+    for (const Part& part : parts)
+        count += static_cast<std::uint64_t>(part.width) * static_cast<std::uint64_t>(part.height);
+    return count;
 }
 
 }  // namespace
 
 RenderResult render(const Scene& scene, const Camera& camera, const Estimator& estimator,
                     const Filter& filter, Film& film, const RenderSettings& settings,
-                    const std::function<bool(const RenderProgress&)>& onPass) {
+                    const std::function<bool(const RenderProgress&)>& onBatch) {
     const auto start = std::chrono::steady_clock::now();
     const auto lightPaths = static_cast<std::uint64_t>(estimator.lightPathsPerSample());
     const std::vector<Part> parts = partsFor(film.window(), lightPaths > 0);
     std::vector<SplatList> lists;
     if (lightPaths > 0) {
-        film.expectSplats();
+        film.expectSplats(lightPaths * pixelsOf(parts));
         lists.resize(listCount(settings.threads, lightPaths), SplatList(film.window(), filter));
     }
-    const double pixels = static_cast<double>(film.window().width) * film.window().height;
-    const std::uint64_t framePixels = static_cast<std::uint64_t>(film.window().fullWidth) *
-                                      static_cast<std::uint64_t>(film.window().fullHeight);
+    const double pixels = static_cast<double>(film.pixelCount());
     const std::uint64_t refusedBefore = scene.refusedRays();
     const View view{scene, camera, filter, film.color() == FilmColor::xyz};
     Recorder recorder{view,          estimator,       film, settings.techniqueImages,
                       settings.seed, settings.sampler};
     RenderResult result;
+    std::size_t partsDone = film.state().unfinishedParts;  // of the sample at hand
+    if (partsDone >= parts.size())
+        throw std::invalid_argument("render: the film's unfinished sample has more parts than it");
+    std::uint64_t allPartsDone = 0;
     while (result.samples < settings.samples && !result.wasInterrupted &&
-           result.seconds < settings.timeLimitSeconds) {
-        const std::uint32_t first = result.samples;
-        const std::uint32_t count =
-            passSize(first, settings.samples, result.seconds, settings.timeLimitSeconds);
+           (partsDone > 0 || result.seconds < settings.timeLimitSeconds)) {
+        const Batch batch = nextBatch(
+            settings.firstSample + result.samples, settings.samples - result.samples, partsDone,
+            parts.size(), static_cast<double>(allPartsDone) / std::max(result.seconds, 1e-9),
+            settings.timeLimitSeconds - result.seconds, settings.threads);
+        const std::size_t count = batch.endPart - batch.beginPart;
+        const auto batchParts = std::span(parts).subspan(batch.beginPart, count);
+        const bool isUnfinished = count < parts.size();
+        if (isUnfinished) film.expectUnfinishedSample();
         if (lists.empty())
-            takePass(recorder, parts, settings.firstSample + first, count, settings.threads);
+            takeBatch(recorder, batchParts, batch, settings.threads, isUnfinished);
         else
-            takeSplattingPass(recorder, parts, settings.firstSample + first, count,
-                              settings.threads, lists);
-        film.addLightPaths(count * framePixels * lightPaths);
-        film.addSamples(count);
-        result.samples += count;
+            takeSplattingBatch(recorder, batchParts, batch, settings.threads, lists, isUnfinished);
+        film.addLightPaths(batch.sampleCount * pixelsOf(batchParts) * lightPaths);
+        allPartsDone += count * batch.sampleCount;
+        partsDone = batch.endPart % parts.size();
+        film.setUnfinishedParts(partsDone);
+        if (partsDone == 0) {
+            finishSample(film, settings.threads);
+            film.addSamples(batch.sampleCount);
+            result.samples += batch.sampleCount;
+        }
         result.seconds = secondsSince(start);
-        const double fraction = std::max(static_cast<double>(result.samples) / settings.samples,
-                                         result.seconds / settings.timeLimitSeconds);
-        const RenderProgress progress{result.samples, settings.samples, result.seconds,
-                                      std::min(fraction, 1.0),
-                                      pixels * result.samples / std::max(result.seconds, 1e-9)};
-        if (onPass && !onPass(progress)) result.wasInterrupted = result.samples < settings.samples;
+        const double samples =
+            result.samples + static_cast<double>(partsDone) / static_cast<double>(parts.size());
+        const double fraction =
+            std::max(samples / settings.samples, result.seconds / settings.timeLimitSeconds);
+        const RenderProgress progress{
+            result.samples,          settings.samples,
+            partsDone == 0,          result.seconds,
+            std::min(fraction, 1.0), pixels * samples / std::max(result.seconds, 1e-9)};
+        if (onBatch && !onBatch(progress))
+            result.wasInterrupted = result.samples < settings.samples;
     }
     result.badSampleCount = recorder.bad.size();
     result.badSamples = firstOf(std::move(recorder.bad));

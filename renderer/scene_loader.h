@@ -31,6 +31,7 @@ struct FilmSettings {
 struct FitSummary {
     int terms = 0, degree = 0;
     double directionMrad = 0.0, sensorMicrometres = 0.0;
+    std::string hash;  // of all its numbers
 };
 
 struct LoadedScene {

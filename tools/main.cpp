@@ -13,7 +13,9 @@
 #include "renderer/estimator.h"
 #include "tools/bench_options.h"
 #include "tools/compare_command.h"
+#include "tools/farm_command.h"
 #include "tools/lens_command.h"
+#include "tools/merge_command.h"
 #include "tools/option_checks.h"
 #include "tools/render_command.h"
 #include "tools/replay_command.h"
@@ -29,6 +31,9 @@ Examples:
   etendue render model.obj -o out/model.exr --samples 256 --size 640,480
   etendue render scene.toml -o a.exr -s camera.f_number=5.6 -s material.glass.ior=1.7
   etendue render scene.toml -o a.exr --time 60 --layers albedo,normal,depth
+  etendue render scene.toml -o a.exr --resume --samples 4096
+  etendue merge a.part.exr b.part.exr -o picture.exr
+  etendue farm slurm scene.toml --samples 4096 --task-samples 64 -o out/farm --submit
   etendue check scene.toml
   etendue replay scene.toml --pixel 360,240 --sample 0 -s estimator.kind=bdpt
   etendue compare out/picture.exr out/reference.exr --error-image out/error.png
@@ -66,6 +71,22 @@ void addRender(CLI::App& app, RenderCommand& c) {
                      "Stop after about so long; without --samples, whatever the scene says")
         ->check(positiveNumber())
         ->type_name("SECONDS");
+    render
+        ->add_option("--error", c.errorLimit,
+                     "Stop when the picture's noise is below this: 0.02 is 2 %")
+        ->check(positiveNumber())
+        ->type_name("E");
+    addSampleRange(render, "--range", c.range, "These samples alone: A to B - 1");
+    render->add_flag("--resume", c.resumes, "Go on from the part file, if there is one");
+    render->add_flag("--restart", c.restarts, "Begin anew, whatever part file there is")
+        ->excludes("--resume");
+    render
+        ->add_option("--checkpoint", c.checkpointSeconds,
+                     "Write the part file so often; default: where it costs less than 1 %")
+        ->check(positiveNumber())
+        ->type_name("SECONDS");
+    render->add_flag("--keep-part", c.keepsPart,
+                     "Leave the part file of the finished picture, for more samples");
     addSeed(render, c.seed);
     addThreads(render, c.threads);
     addSize(render, c.size, "Pixels of the full frame: WIDTH,HEIGHT");
@@ -159,8 +180,10 @@ ExitCode run(int argc, char** argv) {
     addReplay(app, replay);
     std::function<ExitCode()> chosen;  // of the commands that have subcommands
     addCompareCommand(app, chosen);
+    addMergeCommand(app, render.commandLine, chosen);
     addBenchCommands(app, render.commandLine, chosen);
     addLensCommands(app, chosen);
+    addFarmCommands(app, chosen);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -6,10 +6,15 @@
 #include <cctype>
 
 #include "lens/fit_cache.h"
+#include "renderer/atomic_file.h"
+#include "renderer/output_lock.h"
 #include "renderer/parallel.h"
+#include "renderer/part_file.h"
+#include "renderer/picture_noise.h"
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
 #include "renderer/srgb.h"
+#include "tools/part_keeper.h"
 #include "tools/stop_request.h"
 #include "tools/version.h"
 
@@ -33,17 +38,22 @@ FrameWindow windowFor(const RenderCommand& command, const FilmSettings& film) {
     return window;
 }
 
-FilmLayers layersFor(const RenderCommand& command) {
-    const auto has = [&](const char* name) {
-        return std::find(command.layers.begin(), command.layers.end(), name) !=
-               command.layers.end();
-    };
+bool isAskedFor(const RenderCommand& command, const char* layer) {
+    return std::ranges::find(command.layers, layer) != command.layers.end();
+}
+
+/// Light paths fall all over the picture, and of what they bring to a pixel in a sample the
+/// luminance alone is recorded.
+bool hasVarianceOfColors(const std::string& kind) { return kind == "pt"; }
+
+FilmLayers layersFor(const RenderCommand& command, const std::string& kind) {
     FilmLayers layers;
-    layers.albedo = has("albedo");
-    layers.normal = has("normal");
-    layers.depth = has("depth");
-    layers.position = has("position");
-    layers.variance = has("variance");
+    layers.albedo = isAskedFor(command, "albedo");
+    layers.normal = isAskedFor(command, "normal");
+    layers.depth = isAskedFor(command, "depth");
+    layers.position = isAskedFor(command, "position");
+    layers.variance = isAskedFor(command, "variance") && hasVarianceOfColors(kind);
+    layers.luminanceVariance = true;  // of whole pictures: --error, part files
     return layers;
 }
 
@@ -59,8 +69,8 @@ std::vector<float> worldToCamera(const Camera& camera) {
     return rows;
 }
 
-Metadata metadataFor(const RenderCommand& command, const LoadedScene& loaded,
-                     const RenderResult& result) {
+Metadata metadataFor(const RenderCommand& command, const LoadedScene& loaded, const Film& film,
+                     double seconds) {
     Metadata m;
     m["software"] = fmt::format("etendue {}", version);
     m["etendue:version"] = std::string(version);
@@ -69,8 +79,8 @@ Metadata metadataFor(const RenderCommand& command, const LoadedScene& loaded,
     m["etendue:sceneHash"] = loaded.hash;
     m["etendue:estimator"] = loaded.estimator.kind;
     m["etendue:seed"] = std::to_string(command.seed);
-    m["etendue:samples"] = static_cast<int>(result.samples);
-    m["etendue:renderSeconds"] = static_cast<float>(result.seconds);
+    m["etendue:samples"] = static_cast<int>(film.samples());
+    m["etendue:renderSeconds"] = static_cast<float>(seconds);
     m["worldToCamera"] = worldToCamera(*loaded.camera);
     if (loaded.fNumber > 0.0) {
         m["aperture"] = static_cast<float>(loaded.fNumber);
@@ -114,11 +124,20 @@ LoadOptions loadOptions(const RenderCommand& command, int threads) {
     return options;
 }
 
+/// Those of the film that the picture is to have.
+std::vector<ExrChannels> channelsFor(const RenderCommand& command, const LoadedScene& loaded,
+                                     const Film& film) {
+    std::vector<ExrChannels> channels = film.channels();
+    if (!isAskedFor(command, "variance") || hasVarianceOfColors(loaded.estimator.kind))
+        std::erase_if(channels,
+                      [](const ExrChannels& c) { return c.names.front() == "variance.Y"; });
+    return channels;
+}
+
 void writePictures(const RenderCommand& command, const LoadedScene& loaded, const Film& film,
-                   const TechniqueImages& techniques, const RenderResult& result) {
-    const std::vector<ExrChannels> channels = film.channels();
-    const Metadata metadata = metadataFor(command, loaded, result);
-    writeExr(command.output, film.window(), channels, metadata);
+                   const TechniqueImages& techniques, const Metadata& metadata) {
+    const std::vector<ExrChannels> channels = channelsFor(command, loaded, film);
+    if (!isPartFile(command.output)) writeExr(command.output, film.window(), channels, metadata);
     if (!command.techniqueImages.empty())
         writeExr(command.techniqueImages, film.window(),
                  techniques.channels(film.samples(), film.state().lightPaths), metadata);
@@ -151,68 +170,182 @@ void checkWritable(const std::filesystem::path& file, const std::string& extensi
         throw InputError(fmt::format("{}: is a folder, not a file to write", file.string()));
 }
 
-/// What only some estimators can give.
-void checkEstimator(const RenderCommand& command, const std::string& kind) {
-    if (kind == "pt" && !command.techniqueImages.empty())
-        throw InputError(
+/// None of a picture that goes into a pipe or a device.
+std::filesystem::path keptPartOf(const std::filesystem::path& output) {
+    std::error_code error;
+    const bool isElsewhere =
+        std::filesystem::exists(output, error) && !std::filesystem::is_regular_file(output, error);
+    return isElsewhere ? std::filesystem::path() : partFileFor(output);
+}
+
+/// What cannot be had together.
+void checkCombinations(const RenderCommand& command, const std::string& kind) {
+    const auto refuse = [](const char* message) { throw InputError(message, ExitCode::usage); };
+    if (command.techniqueImages.empty()) return;
+    if (kind == "pt")
+        refuse(
             "--technique-images: the estimator is \"pt\", which has none; -s estimator.kind=bdpt "
-            "has",
-            ExitCode::usage);
-    if (kind != "pt" && layersFor(command).variance)
-        throw InputError(
-            "--layers variance: light paths fall all over the picture, and their spread within a "
-            "pixel is not recorded; -s estimator.kind=pt has it",
-            ExitCode::usage);
+            "has");
+    if (command.resumes)
+        refuse(
+            "--technique-images: a part file has no such images to go on from, as --resume asks");
+}
+
+/// The sums of which render a part belongs to.
+PartInfo partInfoFor(const RenderCommand& command, const LoadedScene& loaded, const Film& film) {
+    PartInfo info;
+    info.window = film.window();
+    info.layers = film.layers();
+    info.color = film.color();
+    std::string settings;
+    for (const std::string& o : loadOptions(command, 1).overrides)
+        settings += (settings.empty() ? "" : " ") + o;
+    info.madeFrom = {{"program", fmt::format("etendue {}", version)},
+                     {"settings", settings},
+                     {"seed", std::to_string(command.seed)},
+                     {"lens", loaded.lensModel},
+                     {"lens_fit", loaded.fit ? loaded.fit->hash : "none"},
+                     {"scene", loaded.hash}};
+    return info;
+}
+
+SampleRange wantedSamples(const RenderCommand& command, const LoadedScene& loaded) {
+    if (command.range) return *command.range;
+    const bool isOpenEnded = !command.samples && (command.timeLimitSeconds || command.errorLimit);
+    return {0, isOpenEnded ? unlimitedSamples : static_cast<std::uint32_t>(loaded.samples)};
+}
+
+/// Looks at the noise now and then: that takes as long as a sample of a pixel or two.
+class NoiseWatch {
+public:
+    explicit NoiseWatch(std::optional<double> limit) : limit_(limit) {}
+    /// To be called between samples.
+    bool isReached(const Film& film) {
+        if (!limit_ || film.samples() < next_) return false;
+        next_ = film.samples() + film.samples() / 8 + 1;
+        noise_ = pictureNoise(film);
+        return noise_.upperBound <= *limit_;
+    }
+    const PictureNoise& noise() const { return noise_; }
+
+private:
+    /// So few samples say too little of their spread.
+    static constexpr std::uint64_t fewest = 8;
+    std::optional<double> limit_;
+    std::uint64_t next_ = fewest;
+    PictureNoise noise_;
+};
+
+LoadedScene loadFor(const RenderCommand& command, int threads) {
+    LoadOptions options = loadOptions(command, threads);
+    FitBar fitBar;
+    const bool isQuiet = command.progress == ProgressStyle::quiet;
+    if (!isQuiet && command.progress != ProgressStyle::json)
+        options.fitProgress = [&](double share, std::string_view stage) {
+            fitBar.update(share, stage);
+        };
+    LoadedScene loaded = loadScene(command.scene, options);
+    fitBar.clear();
+    printNotes(loaded, isQuiet);
+    return loaded;
+}
+
+std::string noiseText(const PictureNoise& noise) {
+    return fmt::format("noise {:.3g} % (at most {:.3g} %)", 100.0 * noise.relativeError,
+                       100.0 * noise.upperBound);
+}
+
+/// What ended the render.
+std::string endText(const RenderCommand& command, const Film& film, const RenderResult& result,
+                    SampleRange wanted, const NoiseWatch& watch, bool isNoiseReached) {
+    const std::uint64_t samples = film.samples();
+    if (isNoiseReached)
+        return fmt::format("--error {:g} is reached: {}, {} samples per pixel\n",
+                           *command.errorLimit, noiseText(watch.noise()), samples);
+    if (result.wasInterrupted)
+        return fmt::format("stopped early: {} of {} samples per pixel are in the picture\n",
+                           samples, wanted.size());
+    if (samples < wanted.size())
+        return fmt::format("--time {:g} is over: {} samples per pixel\n", *command.timeLimitSeconds,
+                           samples);
+    if (!command.errorLimit) return {};
+    return fmt::format("all {} samples are taken before --error {:g} is reached\n", samples,
+                       *command.errorLimit);
 }
 
 }  // namespace
 
 ExitCode runRender(const RenderCommand& command) {
-    const bool isQuiet = command.progress == ProgressStyle::quiet;
     checkWritable(command.output, ".exr");
     checkWritable(command.preview, ".png");
     checkWritable(command.techniqueImages, ".exr");
-    const int threads = command.threads.value_or(hardwareThreads());
-    LoadOptions options = loadOptions(command, threads);
-    FitBar fitBar;
-    if (!isQuiet && command.progress != ProgressStyle::json)
-        options.fitProgress = [&](double share, std::string_view stage) {
-            fitBar.update(share, stage);
-        };
-    const LoadedScene loaded = loadScene(command.scene, options);
-    fitBar.clear();
-    printNotes(loaded, isQuiet);
+    const std::filesystem::path partFile = keptPartOf(command.output);
+    const OutputLock lock(command.output);
+    if (!partFile.empty()) {
+        sweepTemporaries(command.output);
+        sweepTemporaries(partFile);
+        if (!command.resumes && !command.restarts) refuseToReplacePart(partFile);
+    }
+    heedWriteRequests();
 
-    Film film(windowFor(command, loaded.film), layersFor(command), loaded.film.color);
-    const Filter filter(loaded.film.filter, loaded.film.filterRadius);
-    const std::unique_ptr<Estimator> estimator = makeEstimator(loaded.estimator);
+    const int threads = command.threads.value_or(hardwareThreads());
+    const LoadedScene loaded = loadFor(command, threads);
+    checkCombinations(command, loaded.estimator.kind);
+    Film film(windowFor(command, loaded.film), layersFor(command, loaded.estimator.kind),
+              loaded.film.color);
+    const SampleRange wanted = wantedSamples(command, loaded);
+    PartKeeper keeper(partFile, partInfoFor(command, loaded, film), wanted.begin,
+                      command.checkpointSeconds);
+    const std::uint32_t first = command.resumes ? keeper.resume(film) : wanted.begin;
+
     RenderSettings settings;
-    const bool isTimed = command.timeLimitSeconds && !command.samples;
-    settings.samples = isTimed ? unlimitedSamples : static_cast<std::uint32_t>(loaded.samples);
+    settings.firstSample = first;
+    settings.samples = std::max(wanted.end, first) - first;
     settings.seed = command.seed;
     settings.sampler = loaded.sampler;
     settings.threads = threads;
     if (command.timeLimitSeconds) settings.timeLimitSeconds = *command.timeLimitSeconds;
-    checkEstimator(command, loaded.estimator.kind);
     TechniqueImages techniques(film.window(), film.color());
     if (!command.techniqueImages.empty()) settings.techniqueImages = &techniques;
 
     heedStopRequests();
     Progress progress(command.progress);
     RenderProgress last;
-    const RenderResult result = render(*loaded.scene, *loaded.camera, *estimator, filter, film,
-                                       settings, [&](const RenderProgress& p) {
-                                           last = p;
-                                           progress.update(p);
-                                           return !isStopRequested();
-                                       });
+    NoiseWatch watch(command.errorLimit);
+    bool isNoiseReached = false;
+    const auto metadata = [&](double seconds) {
+        return metadataFor(command, loaded, film, keeper.earlierSeconds() + seconds);
+    };
+    const auto onBatch = [&](const RenderProgress& p) {
+        last = p;
+        last.samplesDone += first - wanted.begin;
+        last.samplesTarget += first - wanted.begin;
+        progress.update(last);
+        // Technique images know of whole samples alone.
+        const bool canStop = p.isBetweenSamples || command.techniqueImages.empty();
+        if (canStop && isStopRequested()) return false;
+        if (canStop && keeper.isDue())
+            keeper.writeCheckpoint(film, first + p.samplesDone, p.seconds, metadata(p.seconds));
+        isNoiseReached = p.isBetweenSamples && watch.isReached(film);
+        return !isNoiseReached;
+    };
+    const RenderResult result =
+        render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator),
+               Filter(loaded.film.filter, loaded.film.filterRadius), film, settings, onBatch);
     progress.finish(last);
     reportDefects(command, result);
-    writePictures(command, loaded, film, techniques, result);
-    if (result.wasInterrupted && !isQuiet)
-        say(fmt::format("stopped early: {} of {} samples per pixel are in the picture\n",
-                        result.samples, settings.samples));
-    return result.wasInterrupted ? ExitCode::stoppedEarly : ExitCode::success;
+
+    const bool isEarly = result.wasInterrupted && !isNoiseReached;
+    if (isEarly || command.keepsPart || isPartFile(command.output))
+        keeper.write(film, first + result.samples, result.seconds, metadata(result.seconds));
+    writePictures(command, loaded, film, techniques, metadata(result.seconds));
+    if (!isEarly && !command.keepsPart && !isPartFile(command.output)) keeper.remove();
+    if (command.progress != ProgressStyle::quiet) {
+        say(endText(command, film, result, wanted, watch, isNoiseReached));
+        if (isEarly && !keeper.file().empty())
+            say(fmt::format("--resume goes on from {}\n", keeper.file().string()));
+    }
+    return isEarly ? ExitCode::stoppedEarly : ExitCode::success;
 }
 
 ExitCode runCheck(const CheckCommand& command) {

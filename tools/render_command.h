@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/config.h"
+#include "renderer/sample_ranges.h"
 #include "tools/progress.h"
 
 namespace etendue {
@@ -17,6 +18,10 @@ struct RenderCommand {
     std::optional<int> samples, threads;
     std::uint64_t seed = 0;
     std::optional<double> timeLimitSeconds;
+    std::optional<double> errorLimit;  // PictureNoise, by its upper bound
+    std::optional<SampleRange> range;  // in place of all from 0 on
+    std::optional<double> checkpointSeconds;
+    bool resumes = false, restarts = false, keepsPart = false;
     std::vector<int> size;  // width, height, or empty
     std::vector<int> crop;  // x, y, width, height, or empty
     std::vector<std::string> overrides;
@@ -27,7 +32,8 @@ struct RenderCommand {
     std::string commandLine;  // for the metadata
 };
 
-/// Renders and writes the pictures. Throws InputError or std::runtime_error.
+/// Renders and writes the pictures, and on its way the part file (docs/part-files.md). Throws
+/// InputError or std::runtime_error.
 ExitCode runRender(const RenderCommand& command);
 
 struct CheckCommand {

@@ -2,6 +2,8 @@
 // bench_options.cpp and the two headers that these share alone.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
@@ -9,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/sample_ranges.h"
 #include "tools/option_checks.h"
 
 namespace etendue {
@@ -37,6 +40,24 @@ inline void addThreads(CLI::App* command, std::optional<int>& threads) {
     command->add_option("--threads", threads, "Default: one for each processor")
         ->check(CLI::Range(1, 1024).description(""))
         ->type_name("N");
+}
+
+/// "A:B": samples A … B − 1.
+inline void addSampleRange(CLI::App* command, const char* name, std::optional<SampleRange>& range,
+                           const char* description) {
+    command
+        ->add_option_function<std::string>(
+            name,
+            [name, &range](const std::string& text) {
+                range = parseSampleRange(text);
+                if (!range)
+                    throw CLI::ValidationError(
+                        name, fmt::format("expected A:B, two whole numbers with A < B ≤ 2^30, got "
+                                          "\"{}\"",
+                                          text));
+            },
+            description)
+        ->type_name("A:B");
 }
 
 inline void addSize(CLI::App* command, std::vector<int>& size, const char* description) {

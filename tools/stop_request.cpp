@@ -7,7 +7,7 @@ namespace etendue {
 
 namespace {
 
-std::atomic<int> stopRequests{0};
+std::atomic<int> stopRequests{0}, writeRequests{0};
 static_assert(std::atomic<int>::is_always_lock_free);  // a signal handler may touch nothing else
 
 extern "C" void requestStop(int signal) {
@@ -17,6 +17,8 @@ extern "C" void requestStop(int signal) {
     }
 }
 
+extern "C" void requestWrite(int) { ++writeRequests; }
+
 }  // namespace
 
 void heedStopRequests() {
@@ -25,5 +27,9 @@ void heedStopRequests() {
 }
 
 bool isStopRequested() { return stopRequests > 0; }
+
+void heedWriteRequests() { std::signal(SIGUSR1, requestWrite); }
+
+bool takeWriteRequest() { return writeRequests.exchange(0) > 0; }
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// Signals that ask a long command to stop, with what it has so far.
+// Signals that ask a long command to stop with what it has so far, or to write it down.
 #pragma once
 
 namespace etendue {
@@ -7,5 +7,11 @@ namespace etendue {
 void heedStopRequests();
 
 bool isStopRequested();
+
+/// From now on SIGUSR1 asks to write down what there is.
+void heedWriteRequests();
+
+/// Whether anybody has asked since this was called last.
+bool takeWriteRequest();
 
 }  // namespace etendue

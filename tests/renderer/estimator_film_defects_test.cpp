@@ -130,7 +130,7 @@ TEST_CASE("Estimators: parts of a render are put together by sums and counts") {
         renderInto(second, loaded, kind, settings);
         const std::vector<float> a = first.channels().front().pixels,
                                  b = second.channels().front().pixels;
-        first.merge(second);
+        first.merge(second.state());
         CHECK(first.samples() == 9);
         const std::vector<float> merged = first.channels().front().pixels;
         for (std::size_t i = 0; i < merged.size(); ++i) {

@@ -105,7 +105,7 @@ TEST_CASE("Render: …whether the frame has more parts than are splatted at a ti
     // 96 parts: one thread takes 48 at a time, two all of one sample, sixteen those of ten samples.
     const LoadedScene loaded = sceneFromText(mixedScene, {"film.width=96", "film.height=64"});
     const Filter filter(FilterKind::box);
-    const auto splats = [&](int threads) {
+    const auto splats = [&](int threads) -> ExactSums {
         Film film({96, 64, 0, 0, 96, 64});
         RenderSettings settings;
         settings.samples = 40;
@@ -113,7 +113,7 @@ TEST_CASE("Render: …whether the frame has more parts than are splatted at a ti
         render(*loaded.scene, *loaded.camera, WildSplats(), filter, film, settings, {});
         return film.state().splatSums;
     };
-    const std::vector<double> one = splats(1);
+    const ExactSums one = splats(1);
     CHECK(splats(2) == one);
     CHECK(splats(16) == one);
 }
@@ -125,7 +125,7 @@ TEST_CASE("Render: …and for any division into passes") {
     const Filter filter(FilterKind::box);
     const View view{*loaded.scene, *loaded.camera, filter};
     const auto estimator = makeEstimator(loaded.estimator);
-    film.expectSplats();
+    film.expectSplats(48 * 32);
     // Sample by sample and pixel by pixel, in the order that passes keep to.
     for (std::uint32_t s = 0; s < 6; ++s)
         for (int tileY = 0; tileY < 32; tileY += 16)

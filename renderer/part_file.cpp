@@ -1,0 +1,281 @@
+#include "renderer/part_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <span>
+
+#include "config/config.h"
+#include "renderer/content_hash.h"
+#include "renderer/part_header.h"
+
+namespace etendue {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+static_assert(std::endian::native == std::endian::little,
+              "parts are written as they lie in memory");
+
+constexpr const char* suffix = ".part.exr";
+
+/// The end of the file.
+struct Trailer {
+    std::array<char, 8> magic;
+    std::uint64_t headerOffset, headerSize;
+    std::array<char, 32> digest;  // of all bytes before it
+};
+static_assert(sizeof(Trailer) == 56);
+constexpr std::array<char, 8> magic{'e', 't', 'e', 'n', 'p', 'a', 'r', 't'};
+
+/// Writes, and hashes what it writes.
+class Writer {
+public:
+    explicit Writer(AtomicFile& file) : file_(file) {}
+    void write(const void* bytes, std::size_t size) {
+        hasher_.add(bytes, size);
+        file_.write(bytes, size);
+        size_ += size;
+    }
+    template <class T>
+    void write(const std::vector<T>& values) {
+        write(values.data(), values.size() * sizeof(T));
+    }
+    std::uint64_t size() const { return size_; }
+    std::string digest() const { return hasher_.digest(); }
+
+private:
+    AtomicFile& file_;
+    ByteHasher hasher_;
+    std::uint64_t size_ = 0;
+};
+
+InputError damaged(const fs::path& file, const std::string& how) {
+    return InputError(fmt::format("{}: {}", file.string(), how));
+}
+
+/// A part that is open, and has been found whole.
+class Reader {
+public:
+    explicit Reader(const fs::path& file) : file_(file) {
+        std::error_code error;
+        if (!fs::is_regular_file(file, error)) throw missingFileError(file);
+        size_ = fs::file_size(file);
+        stream_.open(file, std::ios::binary);
+        if (!stream_) throw missingFileError(file);
+        if (size_ < sizeof trailer_) throw damaged(file, "is no part file, or cut short");
+        stream_.seekg(static_cast<std::streamoff>(size_ - sizeof trailer_));
+        read(&trailer_, sizeof trailer_);
+        if (trailer_.magic != magic) throw damaged(file, "is no part file, or cut short");
+        if (digestOfFile() != std::string(trailer_.digest.begin(), trailer_.digest.end()))
+            throw damaged(file, "is damaged: its checksum is not that of its content");
+        const std::uint64_t end = size_ - sizeof trailer_;
+        if (trailer_.headerOffset > end || trailer_.headerSize > end - trailer_.headerOffset)
+            throw damaged(file, "is damaged: its header lies outside the file");
+    }
+
+    std::string header() {
+        std::string text(trailer_.headerSize, '\0');
+        stream_.seekg(static_cast<std::streamoff>(trailer_.headerOffset));
+        read(text.data(), text.size());
+        return text;
+    }
+    std::uint64_t bytesBehindHeader() const {
+        return size_ - sizeof trailer_ - trailer_.headerOffset - trailer_.headerSize;
+    }
+    /// What follows what was read last.
+    template <class T>
+    void read(std::vector<T>& values, std::size_t count) {
+        values.resize(count);
+        read(values.data(), count * sizeof(T));
+    }
+
+private:
+    void read(void* bytes, std::size_t size) {
+        if (!stream_.read(static_cast<char*>(bytes), static_cast<std::streamsize>(size)))
+            throw damaged(file_, "cannot be read to its end");
+    }
+    std::string digestOfFile() {
+        ByteHasher hasher;
+        std::vector<char> block(std::size_t{1} << 20);
+        stream_.seekg(0);
+        for (std::uint64_t left = size_ - sizeof trailer_.digest; left > 0;) {
+            const auto count =
+                static_cast<std::size_t>(std::min<std::uint64_t>(left, block.size()));
+            read(block.data(), count);
+            hasher.add(block.data(), count);
+            left -= count;
+        }
+        return hasher.digest();
+    }
+
+    fs::path file_;
+    std::ifstream stream_;
+    std::uint64_t size_ = 0;
+    Trailer trailer_{};
+};
+
+std::uint64_t bytesOf(const PartHeader& header) {
+    const PartInfo& info = header.part.info;
+    const auto pixels = static_cast<std::uint64_t>(info.window.width) *
+                        static_cast<std::uint64_t>(info.window.height);
+    constexpr std::uint64_t perSum = sizeof(double) + sizeof(float);
+    std::uint64_t perPixel = static_cast<std::uint64_t>(Film::sumsPerPixel(info.layers)) * perSum;
+    if (header.planes.splatSums) perPixel += 3 * perSum;
+    if (header.planes.extraSamples) perPixel += sizeof(std::uint16_t);
+    if (header.planes.sampleLuminance) perPixel += sizeof(float);
+    return pixels * perPixel;
+}
+
+/// Only a hostile part has others.
+void requireFinite(const FilmState& state, const fs::path& file) {
+    const auto isFinite = [](const auto& values) {
+        return std::ranges::all_of(values, [](auto v) { return std::isfinite(v); });
+    };
+    if (!isFinite(state.sums.sums) || !isFinite(state.sums.rests) ||
+        !isFinite(state.splatSums.sums) || !isFinite(state.splatSums.rests) ||
+        !isFinite(state.sampleLuminance))
+        throw damaged(file, "has sums that are not finite");
+}
+
+PartHeader readHeader(Reader& reader, const fs::path& file) {
+    PartHeader header = parsePartHeader(reader.header(), file);
+    if (bytesOf(header) != reader.bytesBehindHeader())
+        throw damaged(file, "is damaged: its sums are not those of its header");
+    return header;
+}
+
+std::string layersAsText(const FilmLayers& layers) {
+    return fmt::format("albedo {:d} normal {:d} depth {:d} position {:d} variance {:d} {:d}",
+                       layers.albedo, layers.normal, layers.depth, layers.position, layers.variance,
+                       layers.luminanceVariance);
+}
+
+std::string windowAsText(const FrameWindow& w) {
+    return fmt::format("{},{},{},{} of {} × {}", w.x, w.y, w.width, w.height, w.fullWidth,
+                       w.fullHeight);
+}
+
+}  // namespace
+
+bool isPartFile(const fs::path& file) { return file.filename().string().ends_with(suffix); }
+
+fs::path partFileFor(const fs::path& picture) {
+    if (isPartFile(picture)) return picture;
+    return picture.parent_path() / (picture.stem().string() + suffix);
+}
+
+fs::path previousPart(const fs::path& part) {
+    const std::string name = part.filename().string();
+    const std::string stem =
+        isPartFile(part) ? name.substr(0, name.size() - std::strlen(suffix)) : part.stem().string();
+    return part.parent_path() / (stem + ".part.old.exr");
+}
+
+void writePart(const fs::path& file, const PartInfo& info, const Film& film,
+               const Metadata& metadata) {
+    const FilmState& state = film.state();
+    AtomicFile atomic(file);
+    Writer writer(atomic);
+    {
+        const std::vector<unsigned char> picture =
+            encodeExr(file, film.window(), film.channels(), metadata);
+        writer.write(picture);
+    }
+    Trailer trailer{magic, writer.size(), 0, {}};
+    const std::string header = partHeaderText(
+        info, state,
+        {!state.splatSums.empty(), !state.extraSamples.empty(), !state.sampleLuminance.empty()});
+    trailer.headerSize = header.size();
+    writer.write(header.data(), header.size());
+    writer.write(state.sums.sums);
+    writer.write(state.sums.rests);
+    writer.write(state.splatSums.sums);
+    writer.write(state.splatSums.rests);
+    writer.write(state.extraSamples);
+    writer.write(state.sampleLuminance);
+    writer.write(&trailer, sizeof trailer - sizeof trailer.digest);
+    std::ranges::copy(writer.digest(), trailer.digest.begin());
+    atomic.write(trailer.digest.data(), trailer.digest.size());
+    atomic.commitKeeping(previousPart(file));
+}
+
+PartInfo readPartInfo(const fs::path& file) {
+    Reader reader(file);
+    return readHeader(reader, file).part.info;
+}
+
+Part readPart(const fs::path& file) {
+    Reader reader(file);
+    PartHeader header = readHeader(reader, file);
+    FilmState& state = header.part.state;
+    const FrameWindow& window = header.part.info.window;
+    const std::size_t pixels =
+        static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
+    const auto readSums = [&](ExactSums& sums, std::size_t count) {
+        reader.read(sums.sums, count);
+        reader.read(sums.rests, count);
+    };
+    readSums(state.sums,
+             pixels * static_cast<std::size_t>(Film::sumsPerPixel(header.part.info.layers)));
+    if (header.planes.splatSums) readSums(state.splatSums, 3 * pixels);
+    if (header.planes.extraSamples) reader.read(state.extraSamples, pixels);
+    if (header.planes.sampleLuminance) reader.read(state.sampleLuminance, pixels);
+    requireFinite(state, file);
+    return std::move(header.part);
+}
+
+std::string differenceOf(const PartInfo& a, const PartInfo& b) {
+    const auto differ = [](const std::string& name, const std::string& x, const std::string& y) {
+        return fmt::format("{}: {} and {}", name, x, y);
+    };
+    for (std::size_t i = 0; i < std::max(a.madeFrom.size(), b.madeFrom.size()); ++i) {
+        if (i >= a.madeFrom.size())
+            return differ(b.madeFrom[i].first, "none", b.madeFrom[i].second);
+        if (i >= b.madeFrom.size())
+            return differ(a.madeFrom[i].first, a.madeFrom[i].second, "none");
+        const auto& [nameA, valueA] = a.madeFrom[i];
+        const auto& [nameB, valueB] = b.madeFrom[i];
+        if (nameA != nameB) return differ("made_from", nameA, nameB);
+        if (valueA != valueB) return differ(nameA, valueA, valueB);
+    }
+    if (a.window != b.window)
+        return differ("window", windowAsText(a.window), windowAsText(b.window));
+    if (a.layers != b.layers)
+        return differ("layers", layersAsText(a.layers), layersAsText(b.layers));
+    if (a.color != b.color) return differ("color", "RGB", "XYZ");
+    return {};
+}
+
+void mergePart(PartInfo& info, Film& film, const Part& part, const fs::path& file) {
+    if (const std::string difference = differenceOf(info, part.info); !difference.empty())
+        throw InputError(
+            fmt::format("{}: is a part of another picture: {}", file.string(), difference));
+    SampleRanges there = info.ranges, ranges = info.ranges;
+    for (const std::uint32_t s : info.unfinishedSamples) there.add({s, s + 1});
+    const auto claim = [&](SampleRange range) {
+        if (const auto both = there.overlap(range))
+            throw InputError(fmt::format("{}: its samples {} are in another part, too",
+                                         file.string(), textOf(*both)));
+        there.add(range);
+    };
+    for (const SampleRange& range : part.info.ranges.ranges()) {
+        claim(range);
+        ranges.add(range);
+    }
+    for (const std::uint32_t s : part.info.unfinishedSamples) claim({s, s + 1});
+    film.merge(part.state);
+    info.ranges = std::move(ranges);
+    info.unfinishedSamples.insert(info.unfinishedSamples.end(), part.info.unfinishedSamples.begin(),
+                                  part.info.unfinishedSamples.end());
+    std::ranges::sort(info.unfinishedSamples);
+    info.seconds += part.info.seconds;
+}
+
+}  // namespace etendue

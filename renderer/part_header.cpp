@@ -1,0 +1,164 @@
+#include "renderer/part_header.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "config/config.h"
+#include "renderer/image_check.h"
+
+namespace etendue {
+
+namespace {
+
+constexpr int version = 1;
+constexpr double mostCount = 0x1p62;
+
+struct LayerName {
+    const char* name;
+    bool FilmLayers::*isWanted;
+};
+constexpr std::array layerNames{LayerName{"albedo", &FilmLayers::albedo},
+                                LayerName{"normal", &FilmLayers::normal},
+                                LayerName{"depth", &FilmLayers::depth},
+                                LayerName{"position", &FilmLayers::position},
+                                LayerName{"variance", &FilmLayers::variance},
+                                LayerName{"luminance-variance", &FilmLayers::luminanceVariance}};
+
+struct PlaneName {
+    const char* name;
+    bool PartPlanes::*isThere;
+};
+constexpr std::array planeNames{PlaneName{"splat-sums", &PartPlanes::splatSums},
+                                PlaneName{"extra-samples", &PartPlanes::extraSamples},
+                                PlaneName{"sample-luminance", &PartPlanes::sampleLuminance}};
+
+/// A TOML string.
+std::string tomlString(std::string_view text) {
+    std::string result = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            result += {'\\', c};
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            result += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+        else
+            result += c;
+    }
+    return result + '"';
+}
+
+/// "[a, b]" of what `textOf` makes of each.
+template <class Items, class TextOf>
+std::string listOf(const Items& items, const TextOf& textOf) {
+    std::string result;
+    for (const auto& item : items)
+        if (const std::string text = textOf(item); !text.empty())
+            result += (result.empty() ? "" : ", ") + text;
+    return '[' + result + ']';
+}
+
+std::string layersText(const FilmLayers& layers) {
+    return listOf(layerNames, [&](const LayerName& l) {
+        return layers.*l.isWanted ? tomlString(l.name) : std::string();
+    });
+}
+
+template <class Named, std::size_t count, class Flags, class Member>
+void setFlags(const ConfigTable& table, const char* key, const std::array<Named, count>& names,
+              Member Named::*member, Flags& flags) {
+    for (const std::string& text : table.texts(key)) {
+        const auto found = std::ranges::find(names, text, &Named::name);
+        if (found == names.end()) table.fail(key, fmt::format("\"{}\" is not known", text));
+        flags.*((*found).*member) = true;
+    }
+}
+
+FrameWindow parseWindow(const ConfigTable& table) {
+    const auto number = [&](const char* key, double lowest) {
+        return static_cast<int>(table.integer(key, {lowest, double{largestImageSide}}));
+    };
+    const FrameWindow window{number("width", 1),      number("height", 1),
+                             number("crop_x", 0),     number("crop_y", 0),
+                             number("crop_width", 1), number("crop_height", 1)};
+    if (window.x + window.width > window.fullWidth || window.y + window.height > window.fullHeight)
+        table.fail("crop_width", "the crop lies outside the frame");
+    return window;
+}
+
+void parseSamples(const ConfigTable& table, PartInfo& info, FilmState& state) {
+    const Range index{0.0, 0x1p30};
+    for (const std::vector<double>& row : table.rows("ranges", 2, index)) {
+        const SampleRange range{static_cast<std::uint32_t>(row[0]),
+                                static_cast<std::uint32_t>(row[1])};
+        if (range.begin != row[0] || range.end != row[1] || range.begin >= range.end ||
+            info.ranges.overlap(range))
+            table.fail("ranges", "expected whole numbers, rising, of ranges that do not overlap");
+        info.ranges.add(range);
+    }
+    state.samples = info.ranges.count();
+    if (table.has("unfinished"))
+        for (const double sample : table.numbers("unfinished", 0, index)) {
+            const auto number = static_cast<std::uint32_t>(sample);
+            if (number != sample || info.ranges.overlap({number, number + 1}))
+                table.fail("unfinished", "expected numbers of samples that are in no range");
+            info.unfinishedSamples.push_back(number);
+        }
+    const auto count = [&](const char* key) {
+        return static_cast<std::uint64_t>(table.integer(key, {0.0, mostCount}));
+    };
+    state.unfinishedParts = count("unfinished_parts");
+    state.lightPaths = count("light_paths");
+    state.badSamples = count("bad_samples");
+    state.roundedTerms = count("rounded_terms");
+    info.seconds = table.number("seconds", Range::nonNegative());
+}
+
+}  // namespace
+
+std::string partHeaderText(const PartInfo& info, const FilmState& state, PartPlanes planes) {
+    const FrameWindow& w = info.window;
+    std::string text = fmt::format(
+        "[part]\nversion = {}\nranges = {}\nunfinished = {}\nunfinished_parts = {}\n"
+        "light_paths = {}\nbad_samples = {}\nrounded_terms = {}\nseconds = {}\nplanes = {}\n\n",
+        version,
+        listOf(info.ranges.ranges(),
+               [](SampleRange r) { return fmt::format("[{}, {}]", r.begin, r.end); }),
+        listOf(info.unfinishedSamples, [](std::uint32_t s) { return std::to_string(s); }),
+        state.unfinishedParts, state.lightPaths, state.badSamples, state.roundedTerms,
+        fmt::format("{:.6f}", info.seconds), listOf(planeNames, [&](const PlaneName& p) {
+            return planes.*p.isThere ? tomlString(p.name) : std::string();
+        }));
+    text += fmt::format(
+        "[film]\nwidth = {}\nheight = {}\ncrop_x = {}\ncrop_y = {}\ncrop_width = {}\n"
+        "crop_height = {}\nlayers = {}\ncolor = {}\n\n[made_from]\n",
+        w.fullWidth, w.fullHeight, w.x, w.y, w.width, w.height, layersText(info.layers),
+        tomlString(info.color == FilmColor::xyz ? "xyz" : "rgb"));
+    for (const auto& [name, value] : info.madeFrom)
+        text += fmt::format("{} = {}\n", name, tomlString(value));
+    return text;
+}
+
+PartHeader parsePartHeader(std::string_view text, const std::filesystem::path& file) {
+    const Config config = Config::parse(text, file);
+    const ConfigTable root = config.root();
+    const ConfigTable part = root.table("part"), film = root.table("film"),
+                      madeFrom = root.table("made_from");
+    PartHeader header;
+    PartInfo& info = header.part.info;
+    if (part.integer("version", {1, 1e6}) != version)
+        part.fail("version", "this part was written by a later version of the program");
+    parseSamples(part, info, header.part.state);
+    setFlags(part, "planes", planeNames, &PlaneName::isThere, header.planes);
+    info.window = parseWindow(film);
+    setFlags(film, "layers", layerNames, &LayerName::isWanted, info.layers);
+    if (header.planes.sampleLuminance && !info.layers.luminanceVariance)
+        part.fail("planes", "\"sample-luminance\" is for films with \"luminance-variance\"");
+    info.color = film.choice("color", {"rgb", "xyz"}) == "xyz" ? FilmColor::xyz : FilmColor::rgb;
+    for (const std::string& key : madeFrom.keys())
+        info.madeFrom.emplace_back(key, madeFrom.text(key));
+    for (const ConfigTable& table : {part, film, madeFrom, root}) table.finish();
+    return header;
+}
+
+}  // namespace etendue

@@ -1,0 +1,28 @@
+// The header of a part file: TOML, and back.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "renderer/part_file.h"
+
+namespace etendue {
+
+/// Which of the film's sums a part has; those of the camera's samples it always has.
+struct PartPlanes {
+    bool splatSums = false, extraSamples = false, sampleLuminance = false;
+};
+
+struct PartHeader {
+    Part part;  // its sums empty
+    PartPlanes planes;
+};
+
+/// Of `state` the counts alone are written.
+std::string partHeaderText(const PartInfo& info, const FilmState& state, PartPlanes planes);
+
+/// Throws InputError, naming `file`, for what is no header of a part.
+PartHeader parsePartHeader(std::string_view text, const std::filesystem::path& file);
+
+}  // namespace etendue

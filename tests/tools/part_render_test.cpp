@@ -1,0 +1,232 @@
+// Renders that stop, go on, and add up: the program as a user runs it.
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "config/config.h"
+#include "renderer/image_io.h"
+#include "renderer/part_file.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/tools/command_outcome.h"
+#include "tests/tools/every_material_scene.h"
+
+using namespace etendue;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder with a scene of every material, and commands on it.
+class Renders {
+public:
+    Renders() : scene_(folder_.write("s.toml", everyMaterialScene)) {}
+
+    Outcome render(const std::string& output, const std::string& options) const {
+        return run("render " + scene_.string() + " -o " + path(output).string() +
+                   " --quiet --size 40,24 " + options);
+    }
+    Outcome merge(const std::vector<std::string>& parts, const std::string& output,
+                  const std::string& options = "") const {
+        std::string line = "merge";
+        for (const std::string& part : parts) line += ' ' + path(part).string();
+        return run(line + " -o " + path(output).string() + ' ' + options);
+    }
+    std::vector<float> pixels(const std::string& picture) const {
+        return readExrChannels(path(picture), {"R", "G", "B"})->pixels;
+    }
+    fs::path path(const std::string& name) const { return folder_ / name; }
+
+private:
+    TemporaryFolder folder_;
+    fs::path scene_;
+};
+
+}  // namespace
+
+TEST_CASE("Part: ranges add up to the render of all, bit for bit, in any order") {
+    const Renders renders;
+    for (const std::string kind : {"pt", "lt", "bdpt"}) {
+        CAPTURE(kind);
+        const std::string set = " -s estimator.kind=" + kind;
+        REQUIRE(renders.render("whole.exr", "--samples 11" + set).code == 0);
+        REQUIRE(renders.render("a.part.exr", "--restart --range 0:4" + set).code == 0);
+        REQUIRE(renders.render("b.part.exr", "--restart --range 4:5" + set).code == 0);
+        REQUIRE(renders.render("c.part.exr", "--restart --range 5:11" + set).code == 0);
+        const Outcome merged =
+            renders.merge({"c.part.exr", "a.part.exr", "b.part.exr"}, "m.exr", "--require 0:11");
+        CAPTURE(merged.output);
+        CHECK(merged.code == 0);
+        CHECK(contains(merged.output, "samples 0:11, bit for bit"));
+        CHECK(renders.pixels("m.exr") == renders.pixels("whole.exr"));
+        // A part of parts is a part.
+        REQUIRE(renders.merge({"b.part.exr", "c.part.exr"}, "bc.part.exr").code == 0);
+        REQUIRE(renders.merge({"bc.part.exr", "a.part.exr"}, "m2.exr").code == 0);
+        CHECK(renders.pixels("m2.exr") == renders.pixels("whole.exr"));
+    }
+}
+
+TEST_CASE("Part: a render goes on from its part to the bits of one that did not stop") {
+    const Renders renders;
+    for (const std::string kind : {"pt", "bdpt"}) {
+        CAPTURE(kind);
+        const std::string set = " -s estimator.kind=" + kind;
+        REQUIRE(renders.render("whole.exr", "--samples 9" + set).code == 0);
+        REQUIRE(renders.render("x.exr", "--samples 5 --keep-part" + set).code == 0);
+        CHECK(readPartInfo(renders.path("x.part.exr")).ranges.text() == "0:5");
+        const Outcome refused = renders.render("x.exr", "--samples 9" + set);
+        CHECK(refused.code == 64);
+        CHECK(contains(refused.output, "--resume goes on from them"));
+        REQUIRE(renders.render("x.exr", "--samples 9 --resume" + set).code == 0);
+        CHECK(renders.pixels("x.exr") == renders.pixels("whole.exr"));
+        CHECK_FALSE(fs::exists(renders.path("x.part.exr")));
+    }
+}
+
+TEST_CASE("Part: what does not belong together is refused, and the difference named") {
+    const Renders renders;
+    REQUIRE(renders.render("a.part.exr", "--range 0:2").code == 0);
+    const auto refusal = [&](const std::string& options) {
+        REQUIRE(renders.render("b.part.exr", "--restart " + options).code == 0);
+        const Outcome outcome = renders.merge({"a.part.exr", "b.part.exr"}, "m.exr");
+        CHECK(outcome.code == 65);
+        CHECK_FALSE(fs::exists(renders.path("m.exr")));
+        return outcome.output;
+    };
+    CHECK(contains(refusal("--range 1:3"), "b.part.exr: its samples 1:2 are in another part"));
+    CHECK(contains(refusal("--range 2:3 --seed 7"), "seed: 0 and 7"));
+    CHECK(contains(refusal("--range 2:3 -s estimator.max_depth=3"), "estimator.max_depth=3"));
+    CHECK(contains(refusal("--range 2:3 --crop 0,0,8,8"), "window"));
+    CHECK(contains(refusal("--range 2:3 --layers albedo"), "layers"));
+    const Outcome resumed = renders.render("a.part.exr", "--range 0:4 --resume --seed 3");
+    CHECK(resumed.code == 65);
+    CHECK(contains(resumed.output, "seed: 3 and 0"));
+}
+
+TEST_CASE("Part: holes are named, and the picture of the rest is written") {
+    const Renders renders;
+    REQUIRE(renders.render("a.part.exr", "--range 1:2").code == 0);
+    REQUIRE(renders.render("b.part.exr", "--range 4:6").code == 0);
+    const Outcome merged =
+        renders.merge({"a.part.exr", "b.part.exr"}, "m.exr",
+                      "--require 0:8 --preview " + renders.path("m.png").string());
+    CHECK(merged.code == 75);
+    for (const char* hole : {"hole 0:1\n", "hole 2:4\n", "hole 6:8\n"})
+        CHECK(contains(merged.output, hole));
+    CHECK(fs::exists(renders.path("m.exr")));
+    CHECK(fs::exists(renders.path("m.png")));
+}
+
+TEST_CASE("Part: a damaged one is refused by name, and the one before it is used") {
+    const Renders renders;
+    REQUIRE(renders.render("whole.exr", "--samples 8").code == 0);
+    REQUIRE(renders.render("x.part.exr", "--range 0:2").code == 0);
+    REQUIRE(renders.render("x.part.exr", "--range 0:4 --resume").code == 0);
+    const fs::path part = renders.path("x.part.exr");
+    CHECK(readPartInfo(previousPart(part)).ranges.text() == "0:2");
+    const std::string good = readFile(part);
+    const auto write = [&](const std::string& bytes) {
+        std::ofstream(part, std::ios::binary) << bytes;
+    };
+    const auto refused = [&] {
+        try {
+            readPart(part);
+        } catch (const InputError& error) {
+            return contains(error.what(), "x.part.exr");
+        }
+        return false;
+    };
+    std::mt19937 random(11);
+    int refusals = 0;
+    for (int i = 0; i < 64; ++i) {
+        std::string bad = good;
+        bad[random() % bad.size()] ^= static_cast<char>(1u << random() % 8);
+        write(bad);
+        refusals += refused();
+    }
+    CHECK(refusals == 64);
+    for (std::size_t size = 0; size < good.size(); size += 4096) {
+        CAPTURE(size);
+        write(good.substr(0, size));
+        CHECK(refused());
+    }
+    const Outcome resumed = renders.render("x.part.exr", "--range 0:8 --resume");
+    CAPTURE(resumed.output);
+    CHECK(resumed.code == 0);
+    CHECK(contains(resumed.output, "x.part.exr: is"));
+    CHECK(contains(resumed.output, "x.part.old.exr in its place"));
+    REQUIRE(renders.merge({"x.part.exr"}, "m.exr").code == 0);
+    CHECK(renders.pixels("m.exr") == renders.pixels("whole.exr"));
+}
+
+TEST_CASE("Part: killed at any time, a render goes on to the same bits") {
+    const Renders renders;
+    std::mt19937 random(5);
+    for (const int threads : {1, 2, 4}) {
+        CAPTURE(threads);
+        const std::string samples =
+            "--samples 60 --checkpoint 0.001 --resume -s estimator.kind=bdpt --threads " +
+            std::to_string(threads);
+        REQUIRE(renders.render("whole.exr", "--restart --samples 60 -s estimator.kind=bdpt").code ==
+                0);
+        const std::string line = "timeout -s KILL ";
+        for (int kill = 0; kill < 8; ++kill) {
+            const double seconds = 0.15 + 0.02 * static_cast<double>(random() % 20);
+            const std::string command = line + std::to_string(seconds) + " " + ETENDUE_COMMAND +
+                                        " render " + renders.path("s.toml").string() + " -o " +
+                                        renders.path("k.exr").string() + " --quiet --size 40,24 " +
+                                        samples + " > /dev/null 2>&1";
+            static_cast<void>(std::system(command.c_str()));
+            for (const char* name : {"k.part.exr", "k.part.old.exr"})
+                if (fs::exists(renders.path(name)))
+                    CHECK_NOTHROW(static_cast<void>(readPart(renders.path(name))));
+        }
+        REQUIRE(renders.render("k.exr", samples).code == 0);
+        CHECK(renders.pixels("k.exr") == renders.pixels("whole.exr"));
+        // Nothing stays: no part, no temporary, no lock.
+        for (const fs::directory_entry& entry : fs::directory_iterator(renders.path(".")))
+            CHECK_FALSE(entry.path().filename().string().starts_with("."));
+        CHECK_FALSE(fs::exists(renders.path("k.part.exr")));
+        fs::remove(renders.path("k.exr"));
+    }
+}
+
+TEST_CASE("Part: a second process on the same output is refused") {
+    const Renders renders;
+    const std::string scene = renders.path("s.toml").string();
+    const std::string x = renders.path("x.exr").string();
+    const std::string line =
+        "render " + scene + " -o " + x + " --quiet --samples 1000000 & pid=$!; " + "while ! [ -s " +
+        renders.path(".x.exr.lock").string() + " ]; do sleep 0.02; done; " + ETENDUE_COMMAND +
+        " render " + scene + " -o " + x + " --quiet --samples 1 2>&1; echo code $?; kill -9 $pid";
+    const Outcome outcome = run(line);
+    CAPTURE(outcome.output);
+    CHECK(contains(outcome.output, "is writing it"));
+    CHECK(contains(outcome.output, "code 1"));
+    // Killed, it holds nothing any more.
+    CHECK(run("render " + scene + " -o " + x + " --quiet --restart --samples 1").code == 0);
+}
+
+TEST_CASE("Part: SIGUSR1 writes it while the render goes on; --error ends one") {
+    const Renders renders;
+    const std::string scene = renders.path("s.toml").string();
+    const std::string x = renders.path("x.exr").string();
+    const std::string part = renders.path("x.part.exr").string();
+    const std::string line =
+        "render " + scene + " -o " + x +
+        " --quiet --samples 1000000 & pid=$!; for i in 1 2 3 4 5 6 7 8 9 10; " +
+        "do sleep 0.3; kill -USR1 $pid; [ -e " + part +
+        " ] && break; done; kill -INT $pid; wait $pid; echo code $?";
+    const Outcome outcome = run(line);
+    CHECK(contains(outcome.output, "code 75"));
+    CHECK(readPartInfo(part).ranges.count() > 0);
+    const Outcome noise = run("render " + scene + " -o " + renders.path("n.exr").string() +
+                              " --size 40,24 --progress json --error 0.5");
+    CAPTURE(noise.output);
+    CHECK(noise.code == 0);
+    CHECK(contains(noise.output, "--error 0.5 is reached"));
+}

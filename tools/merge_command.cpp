@@ -1,0 +1,92 @@
+#include "tools/merge_command.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "renderer/output_lock.h"
+#include "renderer/part_file.h"
+#include "renderer/srgb.h"
+#include "tools/progress.h"
+#include "tools/version.h"
+
+namespace etendue {
+
+namespace {
+
+struct Merged {
+    PartInfo info;
+    Film film;
+};
+
+Merged mergeAll(const std::vector<std::filesystem::path>& parts) {
+    std::optional<Merged> merged;
+    for (const std::filesystem::path& file : parts) {
+        const Part part = readPart(file);
+        if (!merged) {
+            PartInfo empty = part.info;
+            empty.ranges = {};
+            empty.unfinishedSamples.clear();
+            empty.seconds = 0.0;
+            merged =
+                Merged{std::move(empty), Film(part.info.window, part.info.layers, part.info.color)};
+        }
+        mergePart(merged->info, merged->film, part, file);
+    }
+    return std::move(*merged);
+}
+
+Metadata metadataFor(const MergeCommand& command, const Merged& merged) {
+    Metadata m;
+    m["software"] = fmt::format("etendue {}", version);
+    m["etendue:version"] = std::string(version);
+    m["etendue:command"] = command.commandLine;
+    m["etendue:samples"] = static_cast<int>(merged.film.samples());
+    m["etendue:ranges"] = merged.info.ranges.text();
+    m["etendue:renderSeconds"] = static_cast<float>(merged.info.seconds);
+    for (const auto& [name, value] : merged.info.madeFrom) {
+        if (name == "seed") m["etendue:seed"] = value;
+        if (name == "scene") m["etendue:sceneHash"] = value;
+    }
+    return m;
+}
+
+void writeMerged(const MergeCommand& command, const Merged& merged) {
+    const Metadata metadata = metadataFor(command, merged);
+    std::vector<ExrChannels> channels = merged.film.channels();
+    if (!command.preview.empty())
+        writePng(
+            command.preview, merged.film.window().width, merged.film.window().height,
+            srgbBytes(channels.front().pixels, static_cast<float>(command.previewExposureStops)));
+    if (isPartFile(command.output))
+        writePart(command.output, merged.info, merged.film, metadata);
+    else
+        writeExr(command.output, merged.film.window(), channels, metadata);
+}
+
+/// What the picture is, compared with that of one render of all its samples.
+std::string exactnessText(const Merged& merged) {
+    const FilmState& state = merged.film.state();
+    if (!merged.info.unfinishedSamples.empty())
+        return "parts of the frame have had samples that others have not";
+    if (state.roundedTerms == 0) return "bit for bit the render of all of them at once";
+    return fmt::format(
+        "the render of all of them at once but for {} terms, rounded at 2⁻⁷⁷ of their sums",
+        state.roundedTerms);
+}
+
+}  // namespace
+
+ExitCode runMerge(const MergeCommand& command) {
+    const OutputLock lock(command.output);
+    const Merged merged = mergeAll(command.parts);
+    writeMerged(command, merged);
+    fmt::print("{}: samples {}, {}\n", command.output.string(), merged.info.ranges.text(),
+               exactnessText(merged));
+    if (!command.required) return ExitCode::success;
+    const std::vector<SampleRange> holes = merged.info.ranges.holes(*command.required);
+    for (const SampleRange& hole : holes) say(fmt::format("hole {}\n", textOf(hole)));
+    return holes.empty() ? ExitCode::success : ExitCode::stoppedEarly;
+}
+
+}  // namespace etendue

@@ -59,19 +59,13 @@ Film::Film(const FrameWindow& window, const FilmLayers& layers, FilmColor color)
 }
 
 void Film::addTo(std::size_t slot, double value) {
-    if (!state_.sums.add(slot, value))
-        std::atomic_ref(state_.roundedTerms).fetch_add(1, std::memory_order_relaxed);
+    if (!state_.sums.add(slot, value)) countRounded();
 }
 
 void Film::addSquare(std::size_t slot, double value) { state_.sums.add(slot, value * value); }
 
 void Film::addTo(std::size_t slot, Vec3 v) {
-    for (int i = 0; i < 3; ++i) addTo(slot + static_cast<std::size_t>(i), double{v[i]});
-}
-
-double Film::luminanceOf(Vec3d value) const {
-    return color_ == FilmColor::xyz ? value.y
-                                    : 0.2126 * value.x + 0.7152 * value.y + 0.0722 * value.z;
+    if (!state_.sums.addThree(slot, double{v.x}, double{v.y}, double{v.z})) countRounded();
 }
 
 void Film::expectSplats(std::uint64_t lightPathsPerSample) {
@@ -80,16 +74,8 @@ void Film::expectSplats(std::uint64_t lightPathsPerSample) {
     if (layers_.luminanceVariance) state_.sampleLuminance.resize(pixelCount());
 }
 
-void Film::addSplat(int x, int y, const Spectrum& value) {
-    const std::size_t pixel = pixelNumber(x, y);
-    bool isExact = true;
-    for (int i = 0; i < 3; ++i)
-        isExact = state_.splatSums.add(3 * pixel + static_cast<std::size_t>(i), double{value[i]}) &&
-                  isExact;
-    if (!isExact) std::atomic_ref(state_.roundedTerms).fetch_add(1, std::memory_order_relaxed);
-    if (!state_.sampleLuminance.empty())
-        state_.sampleLuminance[pixel] +=
-            static_cast<float>(samplesPerLightPath_ * luminanceOf({value[0], value[1], value[2]}));
+void Film::countRounded() {
+    std::atomic_ref(state_.roundedTerms).fetch_add(1, std::memory_order_relaxed);
 }
 
 bool Film::countBad() {

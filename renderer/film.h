@@ -54,6 +54,8 @@ struct FilmState {
     /// The luminance that the unfinished sample has brought to each pixel; empty unless light is
     /// splatted and its variance wanted.
     std::vector<float> sampleLuminance;
+
+    friend bool operator==(const FilmState&, const FilmState&) = default;
 };
 
 /// What a film's sums are: R, G, B, or of a spectral render X, Y, Z, which are never negative, as
@@ -90,7 +92,14 @@ public:
     void expectSplats(std::uint64_t lightPathsPerSample);
     /// Adds light that a light path brought to pixel (x, y) of the window: the film holds the mean
     /// over all light paths. The value must be finite and not negative (isUsable).
-    void addSplat(int x, int y, const Spectrum& value);
+    void addSplat(int x, int y, const Spectrum& value) {
+        const std::size_t pixel = pixelNumber(x, y);
+        const Vec3d color{value[0], value[1], value[2]};
+        if (!state_.splatSums.addThree(3 * pixel, color.x, color.y, color.z)) countRounded();
+        if (!state_.sampleLuminance.empty())
+            state_.sampleLuminance[pixel] +=
+                static_cast<float>(samplesPerLightPath_ * luminanceOf(color));
+    }
     /// Has the pixel brought near, if it is one of the window's, for what will be added soon.
     void expectSplat(int x, int y) const {
         if (x < window_.x || x - window_.x >= window_.width || y < window_.y ||
@@ -168,7 +177,12 @@ private:
     void addTo(std::size_t slot, double value);
     /// Squares of small samples have to be rounded beside others: no picture's sum is, by that.
     void addSquare(std::size_t slot, double value);
-    double luminanceOf(Vec3d value) const;
+    /// A term had to be.
+    void countRounded();
+    double luminanceOf(Vec3d value) const {
+        return color_ == FilmColor::xyz ? value.y
+                                        : 0.2126 * value.x + 0.7152 * value.y + 0.0722 * value.z;
+    }
     /// The pixel's camera samples.
     double sampleCount(std::size_t pixel) const;
     /// The mean over samples and that over light paths, in the film's own colors.

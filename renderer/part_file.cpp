@@ -121,18 +121,6 @@ private:
     Trailer trailer_{};
 };
 
-std::uint64_t bytesOf(const PartHeader& header) {
-    const PartInfo& info = header.part.info;
-    const auto pixels = static_cast<std::uint64_t>(info.window.width) *
-                        static_cast<std::uint64_t>(info.window.height);
-    constexpr std::uint64_t perSum = sizeof(double) + sizeof(float);
-    std::uint64_t perPixel = static_cast<std::uint64_t>(Film::sumsPerPixel(info.layers)) * perSum;
-    if (header.planes.splatSums) perPixel += 3 * perSum;
-    if (header.planes.extraSamples) perPixel += sizeof(std::uint16_t);
-    if (header.planes.sampleLuminance) perPixel += sizeof(float);
-    return pixels * perPixel;
-}
-
 /// Only a hostile part has others.
 void requireFinite(const FilmState& state, const fs::path& file) {
     const auto isFinite = [](const auto& values) {
@@ -146,15 +134,9 @@ void requireFinite(const FilmState& state, const fs::path& file) {
 
 PartHeader readHeader(Reader& reader, const fs::path& file) {
     PartHeader header = parsePartHeader(reader.header(), file);
-    if (bytesOf(header) != reader.bytesBehindHeader())
+    if (bytesOfSums(header) != reader.bytesBehindHeader())
         throw damaged(file, "is damaged: its sums are not those of its header");
     return header;
-}
-
-std::string layersAsText(const FilmLayers& layers) {
-    return fmt::format("albedo {:d} normal {:d} depth {:d} position {:d} variance {:d} {:d}",
-                       layers.albedo, layers.normal, layers.depth, layers.position, layers.variance,
-                       layers.luminanceVariance);
 }
 
 std::string windowAsText(const FrameWindow& w) {
@@ -247,8 +229,7 @@ std::string differenceOf(const PartInfo& a, const PartInfo& b) {
     }
     if (a.window != b.window)
         return differ("window", windowAsText(a.window), windowAsText(b.window));
-    if (a.layers != b.layers)
-        return differ("layers", layersAsText(a.layers), layersAsText(b.layers));
+    if (a.layers != b.layers) return differ("layers", layersText(a.layers), layersText(b.layers));
     if (a.color != b.color) return differ("color", "RGB", "XYZ");
     return {};
 }

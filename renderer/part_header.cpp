@@ -58,12 +58,6 @@ std::string listOf(const Items& items, const TextOf& textOf) {
     return '[' + result + ']';
 }
 
-std::string layersText(const FilmLayers& layers) {
-    return listOf(layerNames, [&](const LayerName& l) {
-        return layers.*l.isWanted ? tomlString(l.name) : std::string();
-    });
-}
-
 template <class Named, std::size_t count, class Flags, class Member>
 void setFlags(const ConfigTable& table, const char* key, const std::array<Named, count>& names,
               Member Named::*member, Flags& flags) {
@@ -115,6 +109,24 @@ void parseSamples(const ConfigTable& table, PartInfo& info, FilmState& state) {
 }
 
 }  // namespace
+
+std::string layersText(const FilmLayers& layers) {
+    return listOf(layerNames, [&](const LayerName& l) {
+        return layers.*l.isWanted ? tomlString(l.name) : std::string();
+    });
+}
+
+std::uint64_t bytesOfSums(const PartHeader& header) {
+    const PartInfo& info = header.part.info;
+    const auto pixels = static_cast<std::uint64_t>(info.window.width) *
+                        static_cast<std::uint64_t>(info.window.height);
+    constexpr std::uint64_t perSum = sizeof(double) + sizeof(float);
+    std::uint64_t perPixel = static_cast<std::uint64_t>(Film::sumsPerPixel(info.layers)) * perSum;
+    if (header.planes.splatSums) perPixel += 3 * perSum;
+    if (header.planes.extraSamples) perPixel += sizeof(std::uint16_t);
+    if (header.planes.sampleLuminance) perPixel += sizeof(float);
+    return pixels * perPixel;
+}
 
 std::string partHeaderText(const PartInfo& info, const FilmState& state, PartPlanes planes) {
     const FrameWindow& w = info.window;

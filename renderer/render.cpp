@@ -115,15 +115,6 @@ struct Recorder {
     }
 };
 
-/// Part by part, all samples of one by the same thread.
-void takeBatch(Recorder& recorder, std::span<const Part> parts, const Batch& batch, int threads,
-               bool isUnfinished) {
-    parallelFor(parts.size(), threads, [&](std::size_t i) {
-        for (std::uint32_t s = 0; s < batch.sampleCount; ++s)
-            recorder.takePart(parts[i], batch.firstSample + s, nullptr, isUnfinished);
-    });
-}
-
 /// The film's share of what is done when all of a frame has had a sample.
 void finishSample(Film& film, int threads) {
     const int height = film.window().height;
@@ -131,6 +122,15 @@ void finishSample(Film& film, int threads) {
     parallelFor(static_cast<std::size_t>((height + rows - 1) / rows), threads, [&](std::size_t i) {
         const int first = static_cast<int>(i) * rows;
         film.finishSample(first, std::min(first + rows, height));
+    });
+}
+
+/// Part by part, all samples of one by the same thread.
+void takeBatch(Recorder& recorder, std::span<const Part> parts, const Batch& batch, int threads,
+               bool isUnfinished) {
+    parallelFor(parts.size(), threads, [&](std::size_t i) {
+        for (std::uint32_t s = 0; s < batch.sampleCount; ++s)
+            recorder.takePart(parts[i], batch.firstSample + s, nullptr, isUnfinished);
     });
 }
 

@@ -61,6 +61,12 @@ struct LoadOptions {
     /// A file whose [camera] is looked through in place of the scene's, from the scene's `from`,
     /// `to` and `up` unless it has its own; empty: none.
     std::filesystem::path camera = {};
+
+    /// Overrides the picture's size.
+    void setSize(int width, int height) {
+        overrides.push_back("film.width=" + std::to_string(width));
+        overrides.push_back("film.height=" + std::to_string(height));
+    }
 };
 
 /// `file` is a scene (.toml) or a bare model (.obj), which gets a camera and, if nothing in it

@@ -12,6 +12,7 @@
 #include "tools/farm_queue.h"
 #include "tools/json.h"
 #include "tools/progress.h"
+#include "tools/scene_names.h"
 #include "tools/write_file.h"
 
 namespace etendue {
@@ -70,16 +71,8 @@ std::string loadedHash(const FarmJob& job) {
     LoadOptions options{job.overrides, hardwareThreads(), fitCacheIn(job.cache())};
     options.camera = job.camera;
     options.samples = static_cast<int>(job.plan.samples);
-    if (!job.size.empty()) {
-        options.overrides.push_back(fmt::format("film.width={}", job.size[0]));
-        options.overrides.push_back(fmt::format("film.height={}", job.size[1]));
-    }
-    FitBar fitBar;
-    options.fitProgress = [&](double share, std::string_view stage) {
-        fitBar.update(share, stage);
-    };
-    const LoadedScene loaded = loadScene(job.scene, options);
-    fitBar.clear();
+    if (!job.size.empty()) options.setSize(job.size[0], job.size[1]);
+    const LoadedScene loaded = loadShowingFit(job.scene, std::move(options));
     for (const std::string& note : loaded.notes) say(fmt::format("note: {}\n", note));
     return loaded.hash;
 }

@@ -59,10 +59,7 @@ void addRender(CLI::App& app, RenderCommand& c) {
     render->add_option("-o,--output", c.output, "The picture: linear float EXR")
         ->required()
         ->type_name("FILE");
-    render->add_option("--preview", c.preview, "Also write an sRGB PNG")->type_name("FILE");
-    render->add_option("--exposure", c.previewExposureStops, "Added to the PNG, not to the EXR")
-        ->check(numberBetween(-100.0, 100.0))
-        ->type_name("STOPS");
+    addPreview(render, c.preview);
     render->add_option("--samples", c.samples, "Per pixel; default: the scene's estimator.samples")
         ->check(CLI::Range(1, 1 << 30).description(""))
         ->type_name("N");

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <memory>
+#include <optional>
 
 #include "renderer/output_lock.h"
 #include "renderer/part_file.h"
-#include "renderer/srgb.h"
 #include "tools/progress.h"
 #include "tools/version.h"
 
@@ -53,11 +52,8 @@ Metadata metadataFor(const MergeCommand& command, const Merged& merged) {
 
 void writeMerged(const MergeCommand& command, const Merged& merged) {
     const Metadata metadata = metadataFor(command, merged);
-    std::vector<ExrChannels> channels = merged.film.channels();
-    if (!command.preview.empty())
-        writePng(
-            command.preview, merged.film.window().width, merged.film.window().height,
-            srgbBytes(channels.front().pixels, static_cast<float>(command.previewExposureStops)));
+    const std::vector<ExrChannels> channels = merged.film.channels();
+    writePreview(command.preview, merged.film.window(), channels.front().pixels);
     if (isPartFile(command.output))
         writePart(command.output, merged.info, merged.film, metadata);
     else

@@ -9,6 +9,7 @@
 
 #include "config/config.h"
 #include "renderer/sample_ranges.h"
+#include "tools/preview.h"
 
 namespace CLI {
 class App;
@@ -18,8 +19,8 @@ namespace etendue {
 
 struct MergeCommand {
     std::vector<std::filesystem::path> parts;
-    std::filesystem::path output, preview;
-    double previewExposureStops = 0.0;
+    std::filesystem::path output;
+    Preview preview;
     std::optional<SampleRange> required;
     std::string commandLine;  // for the metadata
 };

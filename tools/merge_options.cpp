@@ -22,10 +22,7 @@ void addMergeCommand(CLI::App& app, const std::string& commandLine,
         ->type_name("FILE");
     addSampleRange(merge, "--require", c.required,
                    "Name the samples that are missing of these, and exit with 75");
-    merge->add_option("--preview", c.preview, "Also write an sRGB PNG")->type_name("FILE");
-    merge->add_option("--exposure", c.previewExposureStops, "Added to the PNG, not to the EXR")
-        ->check(numberBetween(-100.0, 100.0))
-        ->type_name("STOPS");
+    addPreview(merge, c.preview);
     merge->callback([command, &chosen] { chosen = [command] { return runMerge(*command); }; });
 }
 

@@ -10,11 +10,12 @@
 #include "renderer/output_lock.h"
 #include "renderer/parallel.h"
 #include "renderer/part_file.h"
-#include "renderer/picture_noise.h"
 #include "renderer/render.h"
 #include "renderer/scene_loader.h"
-#include "renderer/srgb.h"
 #include "tools/part_keeper.h"
+#include "tools/picture_noise.h"
+#include "tools/preview.h"
+#include "tools/scene_names.h"
 #include "tools/stop_request.h"
 #include "tools/version.h"
 
@@ -117,10 +118,7 @@ LoadOptions loadOptions(const RenderCommand& command, int threads) {
     options.samples = command.samples;
     if (!command.techniques.empty())
         options.overrides.push_back("estimator.techniques=" + command.techniques);
-    if (!command.size.empty()) {
-        options.overrides.push_back(fmt::format("film.width={}", command.size[0]));
-        options.overrides.push_back(fmt::format("film.height={}", command.size[1]));
-    }
+    if (!command.size.empty()) options.setSize(command.size[0], command.size[1]);
     return options;
 }
 
@@ -141,10 +139,7 @@ void writePictures(const RenderCommand& command, const LoadedScene& loaded, cons
     if (!command.techniqueImages.empty())
         writeExr(command.techniqueImages, film.window(),
                  techniques.channels(film.samples(), film.state().lightPaths), metadata);
-    if (!command.preview.empty())
-        writePng(
-            command.preview, film.window().width, film.window().height,
-            srgbBytes(channels.front().pixels, static_cast<float>(command.previewExposureStops)));
+    writePreview(command.preview, film.window(), channels.front().pixels);
 }
 
 /// A picture's format does not follow its name; a name that promises another one would mislead.
@@ -215,7 +210,8 @@ SampleRange wantedSamples(const RenderCommand& command, const LoadedScene& loade
     return {0, isOpenEnded ? unlimitedSamples : static_cast<std::uint32_t>(loaded.samples)};
 }
 
-/// Looks at the noise now and then: that takes as long as a sample of a pixel or two.
+/// Looks at the noise of the whole picture, and more rarely the more samples there are: each time
+/// costs a small part of a sample of it.
 class NoiseWatch {
 public:
     explicit NoiseWatch(std::optional<double> limit) : limit_(limit) {}
@@ -237,15 +233,11 @@ private:
 };
 
 LoadedScene loadFor(const RenderCommand& command, int threads) {
-    LoadOptions options = loadOptions(command, threads);
-    FitBar fitBar;
     const bool isQuiet = command.progress == ProgressStyle::quiet;
-    if (!isQuiet && command.progress != ProgressStyle::json)
-        options.fitProgress = [&](double share, std::string_view stage) {
-            fitBar.update(share, stage);
-        };
-    LoadedScene loaded = loadScene(command.scene, options);
-    fitBar.clear();
+    const bool showsFit = !isQuiet && command.progress != ProgressStyle::json;
+    LoadOptions options = loadOptions(command, threads);
+    LoadedScene loaded = showsFit ? loadShowingFit(command.scene, std::move(options))
+                                  : loadScene(command.scene, options);
     printNotes(loaded, isQuiet);
     return loaded;
 }
@@ -277,7 +269,7 @@ std::string endText(const RenderCommand& command, const Film& film, const Render
 
 ExitCode runRender(const RenderCommand& command) {
     checkWritable(command.output, ".exr");
-    checkWritable(command.preview, ".png");
+    checkWritable(command.preview.file, ".png");
     checkWritable(command.techniqueImages, ".exr");
     const std::filesystem::path partFile = keptPartOf(command.output);
     const OutputLock lock(command.output);

@@ -9,12 +9,14 @@
 
 #include "config/config.h"
 #include "renderer/sample_ranges.h"
+#include "tools/preview.h"
 #include "tools/progress.h"
 
 namespace etendue {
 
 struct RenderCommand {
-    std::filesystem::path scene, camera, output, preview, techniqueImages;
+    std::filesystem::path scene, camera, output, techniqueImages;
+    Preview preview;
     std::optional<int> samples, threads;
     std::uint64_t seed = 0;
     std::optional<double> timeLimitSeconds;
@@ -27,7 +29,6 @@ struct RenderCommand {
     std::vector<std::string> overrides;
     std::string techniques;           // of bdpt, or empty
     std::vector<std::string> layers;  // albedo, normal, depth, position, variance
-    double previewExposureStops = 0.0;
     ProgressStyle progress = ProgressStyle::automatic;
     std::string commandLine;  // for the metadata
 };

@@ -11,6 +11,7 @@
 #include "tools/json.h"
 #include "tools/progress.h"
 #include "tools/sample_path.h"
+#include "tools/scene_names.h"
 #include "tools/text_table.h"
 
 namespace etendue {
@@ -238,15 +239,8 @@ Json jsonOf(const SamplePath& path, const Lanes& lanes) {
 LoadedScene load(const ReplayCommand& command) {
     LoadOptions options{command.overrides, hardwareThreads(), fitCacheDirectory()};
     options.camera = command.camera;
-    if (!command.size.empty()) {
-        options.overrides.push_back(fmt::format("film.width={}", command.size[0]));
-        options.overrides.push_back(fmt::format("film.height={}", command.size[1]));
-    }
-    FitBar bar;
-    options.fitProgress = [&](double share, std::string_view stage) { bar.update(share, stage); };
-    LoadedScene loaded = loadScene(command.scene, options);
-    bar.clear();
-    return loaded;
+    if (!command.size.empty()) options.setSize(command.size[0], command.size[1]);
+    return loadShowingFit(command.scene, std::move(options));
 }
 
 SampleId sampleId(const ReplayCommand& command, const LoadedScene& loaded) {

@@ -87,12 +87,19 @@ std::string titleOf(const NamedFile& scene, const NamedFile& camera) {
     return fmt::format("{}, {}", scene.name, camera.name);
 }
 
+LoadedScene loadShowingFit(const std::filesystem::path& scene, LoadOptions options) {
+    FitBar bar;
+    options.fitProgress = [&](double share, std::string_view stage) { bar.update(share, stage); };
+    LoadedScene loaded = loadScene(scene, options);
+    bar.clear();
+    return loaded;
+}
+
 LoadedScene loadView(const NamedFile& scene, const NamedFile& camera, const ViewOptions& view,
                      JobBar& bar) {
     LoadOptions options;
     options.overrides = view.overrides;
-    options.overrides.push_back(fmt::format("film.width={}", view.width));
-    options.overrides.push_back(fmt::format("film.height={}", view.height));
+    options.setSize(view.width, view.height);
     options.threads = view.threads;
     options.fitCache = fitCacheDirectory();
     options.fitProgress = [&](double, std::string_view stage) {

@@ -33,6 +33,9 @@ NamedFile cameraCalled(const std::string& name, const std::filesystem::path& fol
 /// "cornell-box, thin-lens".
 std::string titleOf(const NamedFile& scene, const NamedFile& camera);
 
+/// Loads it; a lens that must be fitted shows how far that is.
+LoadedScene loadShowingFit(const std::filesystem::path& scene, LoadOptions options);
+
 /// How a scene is looked at by commands that measure: at their own size, with dispersion only where
 /// the camera's name asks for it.
 struct ViewOptions {

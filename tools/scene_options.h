@@ -13,6 +13,7 @@
 
 #include "renderer/sample_ranges.h"
 #include "tools/option_checks.h"
+#include "tools/preview.h"
 
 namespace etendue {
 
@@ -21,6 +22,13 @@ inline void addCamera(CLI::App* command, std::filesystem::path& camera) {
         ->add_option("--camera", camera,
                      "Look through this file's [camera], such as scenes/cameras/fisheye.toml")
         ->type_name("FILE");
+}
+
+inline void addPreview(CLI::App* command, Preview& preview) {
+    command->add_option("--preview", preview.file, "Also write an sRGB PNG")->type_name("FILE");
+    command->add_option("--exposure", preview.exposureStops, "Added to the PNG, not to the EXR")
+        ->check(numberBetween(-100.0, 100.0))
+        ->type_name("STOPS");
 }
 
 inline void addOverrides(CLI::App* command, std::vector<std::string>& overrides) {

@@ -15,10 +15,9 @@ struct Outcome {
     std::string output;  // both streams
 };
 
-/// `environment`: "NAME=value", or nothing.
-inline Outcome run(const std::string& arguments, const std::string& environment = "") {
-    const std::string line = environment + " " + ETENDUE_COMMAND + " " + arguments + " 2>&1";
-    FILE* pipe = popen(line.c_str(), "r");
+/// A line of the shell.
+inline Outcome shell(const std::string& line) {
+    FILE* pipe = popen(("exec 2>&1; " + line).c_str(), "r");
     REQUIRE(pipe);
     Outcome outcome{};
     std::array<char, 4096> buffer;
@@ -26,6 +25,11 @@ inline Outcome run(const std::string& arguments, const std::string& environment 
         outcome.output.append(buffer.data(), n);
     outcome.code = WEXITSTATUS(pclose(pipe));
     return outcome;
+}
+
+/// `environment`: "NAME=value", or nothing.
+inline Outcome run(const std::string& arguments, const std::string& environment = "") {
+    return shell(environment + " " + ETENDUE_COMMAND + " " + arguments);
 }
 
 inline bool contains(const std::string& text, const std::string& fragment) {

@@ -2,36 +2,13 @@
 #include "tools/farm_scripts.h"
 
 #include <doctest/doctest.h>
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 
 #include "tests/support/temporary_folder.h"
+#include "tests/tools/command_outcome.h"
 
 using namespace etendue;
 
 namespace {
-
-struct Shell {
-    int code;
-    std::string output;  // of both streams
-};
-
-Shell shell(const std::string& line) {
-    FILE* pipe = popen(("exec 2>&1; " + line).c_str(), "r");
-    REQUIRE(pipe);
-    Shell result{};
-    std::array<char, 4096> buffer;
-    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
-        result.output.append(buffer.data(), n);
-    result.code = WEXITSTATUS(pclose(pipe));
-    return result;
-}
-
-bool contains(const std::string& text, const std::string& fragment) {
-    return text.find(fragment) != std::string::npos;
-}
 
 /// A job whose names are as awkward as names may be, and whose program is a script.
 struct AwkwardFarm {
@@ -89,7 +66,7 @@ TEST_CASE("Farm scripts: a quoted word reaches the command as it was, whatever i
 
 TEST_CASE("Farm scripts: a task's line is a command by itself, wherever it is run") {
     const AwkwardFarm farm;
-    const Shell last = shell("cd / && " + taskLine(farm.job, 3));
+    const Outcome last = shell("cd / && " + taskLine(farm.job, 3));
     CHECK(last.code == 0);
     CHECK(last.output ==
           farm.renderWords() + "<--range><90:100><-o><" + farm.part("90-100.part.exr") + ">");
@@ -106,7 +83,7 @@ TEST_CASE("Farm scripts: an array's element renders its task's range") {
                      first);
     };
     const std::string lastRange = "<--range><90:100><-o><" + farm.part("90-100.part.exr") + ">";
-    const Shell first = element("0", "");
+    const Outcome first = element("0", "");
     CHECK(first.code == 0);
     CHECK(contains(first.output, "task 0, samples 0:30, on "));
     CHECK(contains(first.output,
@@ -116,14 +93,14 @@ TEST_CASE("Farm scripts: an array's element renders its task's range") {
     // The shell names parts as the plan does.
     for (std::uint32_t task = 0; task < farm.job.plan.taskCount(); ++task)
         CHECK(contains(element(std::to_string(task), "0").output, farm.job.plan.partOf(task)));
-    const Shell alone = shell("unset SLURM_ARRAY_TASK_ID; " + farm.in("render.sbatch"));
+    const Outcome alone = shell("unset SLURM_ARRAY_TASK_ID; " + farm.in("render.sbatch"));
     CHECK(alone.code != 0);
     CHECK(contains(alone.output, "render.sbatch is for sbatch --array"));
 }
 
 TEST_CASE("Farm scripts: the merge takes the parts that are there, and none is a hole by itself") {
     const AwkwardFarm farm;
-    const Shell nothing = shell(farm.in("merge.sbatch"));
+    const Outcome nothing = shell(farm.in("merge.sbatch"));
     CHECK(nothing.code == 75);
     CHECK(contains(nothing.output, "hole 0:100"));
     for (const char* name :
@@ -132,7 +109,7 @@ TEST_CASE("Farm scripts: the merge takes the parts that are there, and none is a
     const std::string words = "<merge><-o><" + farm.job.picture.string() + "><--require><0:100><" +
                               farm.part("0-30.part.exr") + "><" + farm.part("90-100.part.exr") +
                               ">";
-    const Shell two = shell(farm.in("merge.sbatch"));
+    const Outcome two = shell(farm.in("merge.sbatch"));
     CHECK(two.code == 0);
     CHECK(contains(two.output, words));
     CHECK(contains(shell(mergeLine(farm.job)).output, words));
@@ -171,7 +148,7 @@ namespace {
 
 /// Runs the render script with a program that writes its part when it gets TERM, `signals` it once
 /// it runs, and appends what scontrol is asked.
-Shell signalledRun(const std::string& signals, const std::string& onTerm) {
+Outcome signalledRun(const std::string& signals, const std::string& onTerm) {
     const AwkwardFarm farm("trap 'echo got TERM; " + onTerm +
                            "; exit 75' TERM\n"
                            "while [ \"$1\" != -o ]; do shift; done\n"
@@ -192,7 +169,7 @@ Shell signalledRun(const std::string& signals, const std::string& onTerm) {
 }  // namespace
 
 TEST_CASE("Farm scripts: at the time limit the part is written and the task requeues itself") {
-    const Shell run = signalledRun("kill -USR1 $script", "echo x > \"$part\"");
+    const Outcome run = signalledRun("kill -USR1 $script", "echo x > \"$part\"");
     CAPTURE(run.output);
     CHECK(run.code == 75);
     CHECK(contains(run.output, "got TERM\n"));
@@ -200,14 +177,14 @@ TEST_CASE("Farm scripts: at the time limit the part is written and the task requ
 }
 
 TEST_CASE("Farm scripts: a task that the time limit leaves without a sample is not requeued") {
-    const Shell run = signalledRun("kill -USR1 $script", ":");
+    const Outcome run = signalledRun("kill -USR1 $script", ":");
     CHECK(run.code == 75);
     CHECK(contains(run.output, "the time limit is too short to render anything"));
     CHECK(!contains(run.output, "scontrol"));
 }
 
 TEST_CASE("Farm scripts: of TERM to all, as by scancel, none is passed on, and nothing requeued") {
-    const Shell run = signalledRun(
+    const Outcome run = signalledRun(
         "kill -TERM $script; sleep 0.3; echo to the render, too; kill -TERM $(cat 'is running')",
         "echo x > \"$part\"");
     CAPTURE(run.output);

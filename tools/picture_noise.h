@@ -11,8 +11,8 @@ namespace etendue {
 /// whose mean is 1: docs/metrics.md).
 struct PictureNoise {
     double relativeError = 0.0;
-    /// The same, as far as it may be by the spread of tiles of the picture: 97.5 % of such bounds
-    /// lie above the truth. Light that no sample has found yet is in neither.
+    /// As large as it may be, by the spread of tiles of the picture: of 40 such bounds 39 lie above
+    /// the error to be expected. Light that no sample has found yet is in neither.
     double upperBound = 0.0;
 };
 

@@ -40,6 +40,10 @@ std::optional<Part> newestPart(const fs::path& file) {
 
 }  // namespace
 
+double defaultCheckpointInterval(double writeSeconds) {
+    return std::max(defaultIntervalSeconds, timesWriting * writeSeconds);
+}
+
 PartKeeper::PartKeeper(fs::path file, PartInfo info, std::uint32_t firstSample,
                        std::optional<double> intervalSeconds)
     : file_(std::move(file)),
@@ -72,8 +76,7 @@ std::uint32_t PartKeeper::resume(Film& film) {
 }
 
 bool PartKeeper::isDue() const {
-    const double interval =
-        intervalSeconds_.value_or(std::max(defaultIntervalSeconds, timesWriting * writeSeconds_));
+    const double interval = intervalSeconds_.value_or(defaultCheckpointInterval(writeSeconds_));
     const std::chrono::duration<double> since = Clock::now() - last_;
     return takeWriteRequest() || since.count() >= interval;
 }

@@ -13,6 +13,10 @@
 
 namespace etendue {
 
+/// From the end of a checkpoint to the next, where nobody says: writing, which took so long the
+/// last time, is to take less than a hundredth of a render.
+double defaultCheckpointInterval(double writeSeconds);
+
 class PartKeeper {
 public:
     /// Without an interval one that keeps what writing takes below a hundredth of the time. `info`:

@@ -29,6 +29,9 @@ struct PartInfo {
     /// What the samples are samples of: names and values, such as {"seed", "0"}. Only parts whose
     /// lists are equal belong to the same picture.
     std::vector<std::pair<std::string, std::string>> madeFrom;
+    /// What a picture's file says of scene and camera, as that of merged parts is to say, too: some
+    /// of etendue:scene, etendue:estimator, worldToCamera, aperture, focus.
+    Metadata picture;
 };
 
 struct Part {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+#include <variant>
 
 #include "config/config.h"
 #include "renderer/image_check.h"
@@ -33,6 +35,15 @@ struct PlaneName {
 constexpr std::array planeNames{PlaneName{"splat-sums", &PartPlanes::splatSums},
                                 PlaneName{"extra-samples", &PartPlanes::extraSamples},
                                 PlaneName{"sample-luminance", &PartPlanes::sampleLuminance}};
+
+/// The metadata of a picture: texts, and numbers so many.
+struct MetadataName {
+    const char* name;
+    std::size_t numbers;  // none: a text
+};
+constexpr std::array metadataNames{
+    MetadataName{"etendue:scene", 0}, MetadataName{"etendue:estimator", 0},
+    MetadataName{"worldToCamera", 16}, MetadataName{"aperture", 1}, MetadataName{"focus", 1}};
 
 /// A TOML string.
 std::string tomlString(std::string_view text) {
@@ -66,6 +77,32 @@ void setFlags(const ConfigTable& table, const char* key, const std::array<Named,
         if (found == names.end()) table.fail(key, fmt::format("\"{}\" is not known", text));
         flags.*((*found).*member) = true;
     }
+}
+
+std::string textOf(const MetadataValue& value) {
+    if (const auto* text = std::get_if<std::string>(&value)) return tomlString(*text);
+    if (const auto* number = std::get_if<float>(&value)) return fmt::format("{}", *number);
+    return listOf(std::get<std::vector<float>>(value),
+                  [](float number) { return fmt::format("{}", number); });
+}
+
+Metadata parsePicture(const ConfigTable& table) {
+    const Range any{-Range::infinity, Range::infinity};  // focus may lie there
+    Metadata picture;
+    for (const auto& [name, count] : metadataNames) {
+        if (!table.has(name)) continue;
+        if (count == 0) {
+            picture[name] = table.text(name);
+        } else if (count == 1) {
+            picture[name] = static_cast<float>(table.number(name, any));
+        } else {
+            std::vector<float> numbers;
+            for (const double number : table.numbers(name, count, any))
+                numbers.push_back(static_cast<float>(number));
+            picture[name] = std::move(numbers);
+        }
+    }
+    return picture;
 }
 
 FrameWindow parseWindow(const ConfigTable& table) {
@@ -148,6 +185,9 @@ std::string partHeaderText(const PartInfo& info, const FilmState& state, PartPla
         tomlString(info.color == FilmColor::xyz ? "xyz" : "rgb"));
     for (const auto& [name, value] : info.madeFrom)
         text += fmt::format("{} = {}\n", name, tomlString(value));
+    text += "\n[picture]\n";
+    for (const auto& [name, value] : info.picture)
+        text += fmt::format("{} = {}\n", tomlString(name), textOf(value));
     return text;
 }
 
@@ -155,7 +195,7 @@ PartHeader parsePartHeader(std::string_view text, const std::filesystem::path& f
     const Config config = Config::parse(text, file);
     const ConfigTable root = config.root();
     const ConfigTable part = root.table("part"), film = root.table("film"),
-                      madeFrom = root.table("made_from");
+                      madeFrom = root.table("made_from"), picture = root.table("picture");
     PartHeader header;
     PartInfo& info = header.part.info;
     if (part.integer("version", {1, 1e6}) != version)
@@ -169,7 +209,8 @@ PartHeader parsePartHeader(std::string_view text, const std::filesystem::path& f
     info.color = film.choice("color", {"rgb", "xyz"}) == "xyz" ? FilmColor::xyz : FilmColor::rgb;
     for (const std::string& key : madeFrom.keys())
         info.madeFrom.emplace_back(key, madeFrom.text(key));
-    for (const ConfigTable& table : {part, film, madeFrom, root}) table.finish();
+    info.picture = parsePicture(picture);
+    for (const ConfigTable& table : {part, film, madeFrom, picture, root}) table.finish();
     return header;
 }
 

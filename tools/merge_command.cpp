@@ -36,7 +36,7 @@ Merged mergeAll(const std::vector<std::filesystem::path>& parts) {
 }
 
 Metadata metadataFor(const MergeCommand& command, const Merged& merged) {
-    Metadata m;
+    Metadata m = merged.info.picture;
     m["software"] = fmt::format("etendue {}", version);
     m["etendue:version"] = std::string(version);
     m["etendue:command"] = command.commandLine;

@@ -70,23 +70,29 @@ std::vector<float> worldToCamera(const Camera& camera) {
     return rows;
 }
 
-Metadata metadataFor(const RenderCommand& command, const LoadedScene& loaded, const Film& film,
-                     double seconds) {
+/// What does not depend on the samples.
+Metadata pictureMetadata(const RenderCommand& command, const LoadedScene& loaded) {
     Metadata m;
-    m["software"] = fmt::format("etendue {}", version);
-    m["etendue:version"] = std::string(version);
-    m["etendue:command"] = command.commandLine;
     m["etendue:scene"] = command.scene.string();
-    m["etendue:sceneHash"] = loaded.hash;
     m["etendue:estimator"] = loaded.estimator.kind;
-    m["etendue:seed"] = std::to_string(command.seed);
-    m["etendue:samples"] = static_cast<int>(film.samples());
-    m["etendue:renderSeconds"] = static_cast<float>(seconds);
     m["worldToCamera"] = worldToCamera(*loaded.camera);
     if (loaded.fNumber > 0.0) {
         m["aperture"] = static_cast<float>(loaded.fNumber);
         m["focus"] = static_cast<float>(loaded.focusDistance);
     }
+    return m;
+}
+
+Metadata metadataFor(const RenderCommand& command, const LoadedScene& loaded, const Film& film,
+                     double seconds) {
+    Metadata m = pictureMetadata(command, loaded);
+    m["software"] = fmt::format("etendue {}", version);
+    m["etendue:version"] = std::string(version);
+    m["etendue:command"] = command.commandLine;
+    m["etendue:sceneHash"] = loaded.hash;
+    m["etendue:seed"] = std::to_string(command.seed);
+    m["etendue:samples"] = static_cast<int>(film.samples());
+    m["etendue:renderSeconds"] = static_cast<float>(seconds);
     return m;
 }
 
@@ -201,6 +207,7 @@ PartInfo partInfoFor(const RenderCommand& command, const LoadedScene& loaded, co
                      {"lens", loaded.lensModel},
                      {"lens_fit", loaded.fit ? loaded.fit->hash : "none"},
                      {"scene", loaded.hash}};
+    info.picture = pictureMetadata(command, loaded);
     return info;
 }
 

@@ -2,6 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+#include <string>
+#include <vector>
+
 #include "config/config.h"
 
 using namespace etendue;
@@ -17,4 +21,17 @@ TEST_CASE("Part header: sums that the film's layers have no place for are refuse
     info.layers.luminanceVariance = false;
     CHECK_THROWS_WITH_AS(parsePartHeader(partHeaderText(info, state, planes), "a"),
                          doctest::Contains("part.planes: \"sample-luminance\" is for"), InputError);
+}
+
+TEST_CASE("Part header: what a picture says of scene and camera comes back") {
+    PartInfo info;
+    info.window = {2, 2, 0, 0, 2, 2};
+    info.picture["etendue:scene"] = std::string("a \"b\" é.toml");
+    info.picture["worldToCamera"] = std::vector<float>(16, 0.1f);
+    info.picture["aperture"] = 2.8f;
+    info.picture["focus"] = std::numeric_limits<float>::infinity();
+    const std::string text = partHeaderText(info, {}, {});
+    CHECK(parsePartHeader(text, "a").part.info.picture == info.picture);
+    info.picture["aperture"] = std::string("wide open");
+    CHECK_THROWS_AS(parsePartHeader(partHeaderText(info, {}, {}), "a"), InputError);
 }

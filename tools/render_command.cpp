@@ -275,17 +275,18 @@ std::string endText(const RenderCommand& command, const Film& film, const Render
 }  // namespace
 
 ExitCode runRender(const RenderCommand& command) {
+    heedWriteRequests();  // before all else: one that comes early is to end nothing
     checkWritable(command.output, ".exr");
     checkWritable(command.preview.file, ".png");
     checkWritable(command.techniqueImages, ".exr");
     const std::filesystem::path partFile = keptPartOf(command.output);
+    checkWritable(partFile, ".exr");
     const OutputLock lock(command.output);
     if (!partFile.empty()) {
         sweepTemporaries(command.output);
         sweepTemporaries(partFile);
         if (!command.resumes && !command.restarts) refuseToReplacePart(partFile);
     }
-    heedWriteRequests();
 
     const int threads = command.threads.value_or(hardwareThreads());
     const LoadedScene loaded = loadFor(command, threads);

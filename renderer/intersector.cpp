@@ -53,15 +53,6 @@ bool setRay(RTCRay& out, const Ray& ray, float reach) {
     return true;
 }
 
-void throwOnError(RTCDevice device, const char* doing) {
-    const RTCError error = rtcGetDeviceError(device);
-    if (error == RTC_ERROR_NONE) return;
-    const char* reason = error == RTC_ERROR_OUT_OF_MEMORY     ? "out of memory"
-                         : error == RTC_ERROR_UNSUPPORTED_CPU ? "processor not supported"
-                                                              : "internal error";
-    throw std::runtime_error(std::string("Embree: ") + reason + " while " + doing);
-}
-
 std::uint32_t mix(std::uint32_t h, std::uint32_t value) {
     h = (h ^ value) * 0x9E3779B1u;
     return h ^ (h >> 15);
@@ -89,12 +80,32 @@ struct Intersector::Embree {
     std::span<const Mesh> meshes;
     std::span<const Instance> instances;
     float reach = 0.0f;
+    std::string lastError;  // in Embree's own words
 
     ~Embree() {
         for (const RTCScene s : meshScenes)
             if (s) rtcReleaseScene(s);
         if (scene) rtcReleaseScene(scene);
         if (device) rtcReleaseDevice(device);
+    }
+
+    void throwOnError(const char* doing) const {
+        const RTCError error = rtcGetDeviceError(device);
+        if (error == RTC_ERROR_NONE) return;
+        const std::string reason = error == RTC_ERROR_OUT_OF_MEMORY     ? "out of memory"
+                                   : error == RTC_ERROR_UNSUPPORTED_CPU ? "processor not supported"
+                                   : lastError.empty()                  ? "internal error"
+                                                                        : lastError;
+        throw std::runtime_error("Embree: " + reason + " while " + doing);
+    }
+
+    void start(const std::string& settings) {
+        device = rtcNewDevice(settings.c_str());
+        throwOnError("starting");
+        const auto keep = [](void* words, RTCError, const char* text) {
+            *static_cast<std::string*>(words) = text;
+        };
+        rtcSetDeviceErrorFunction(device, keep, &lastError);
     }
 
     /// Opacity as existence: with probability 1 − opacity the triangle is not there for this ray.
@@ -140,7 +151,7 @@ struct Intersector::Embree {
         void* triangles =
             rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                     sizeof(mesh.triangles[0]), mesh.triangles.size());
-        throwOnError(device, "allocating a mesh");
+        throwOnError("allocating a mesh");
         std::memcpy(positions, mesh.positions.data(), mesh.positions.size() * sizeof(Vec3));
         std::memcpy(triangles, mesh.triangles.data(),
                     mesh.triangles.size() * sizeof(mesh.triangles[0]));
@@ -162,7 +173,7 @@ struct Intersector::Embree {
             rtcReleaseGeometry(geometry);
         }
         rtcCommitScene(s);
-        throwOnError(device, "building the scene");
+        throwOnError("building the scene");
         return s;
     }
 
@@ -196,8 +207,7 @@ Intersector::Intersector(std::span<const Mesh> meshes, std::span<const Instance>
 #if defined(__x86_64__)
     settings += ",isa=avx2";
 #endif
-    embree_->device = rtcNewDevice(settings.c_str());
-    throwOnError(embree_->device, "starting");
+    embree_->start(settings);
     embree_->meshes = meshes;
     embree_->instances = instances;
     embree_->reach = farthestReach(instances);

@@ -2,13 +2,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "renderer/estimator.h"
 #include "tools/bench_options.h"
@@ -211,7 +214,11 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         say("etendue: out of memory\n");
     } catch (const std::exception& error) {
-        say(fmt::format("etendue: {}\n", error.what()));
+        // What the system says where a thread finds no place.
+        const bool lacksThreads =
+            std::string_view(error.what()).find(std::strerror(EAGAIN)) != std::string_view::npos;
+        say(fmt::format("etendue: {}{}\n", error.what(),
+                        lacksThreads ? ": too little memory, or too few threads allowed" : ""));
     }
     return static_cast<int>(ExitCode::failure);
 }

@@ -11,7 +11,7 @@
 namespace etendue {
 
 struct Outcome {
-    int code;
+    int code;  // of one that a signal ended, 128 more than that, as a shell says it
     std::string output;  // both streams
 };
 
@@ -23,7 +23,8 @@ inline Outcome shell(const std::string& line) {
     std::array<char, 4096> buffer;
     while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
         outcome.output.append(buffer.data(), n);
-    outcome.code = WEXITSTATUS(pclose(pipe));
+    const int status = pclose(pipe);
+    outcome.code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     return outcome;
 }
 

@@ -1,0 +1,328 @@
+// Renders on a machine that is unkind: killed at any time, no room, no memory, odd names and
+// clocks.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "renderer/film.h"
+#include "renderer/part_file.h"
+#include "tests/tools/renders.h"
+#include "tools/part_keeper.h"
+
+using namespace etendue;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int killed = 128 + SIGKILL;
+
+/// The command, killed by the call that `call` counts (tests/support/unkind_machine).
+Outcome killAtCall(int call, const std::string& arguments) {
+    return shell("LD_PRELOAD=" ETENDUE_UNKIND_MACHINE " UNKIND_KILL=" + std::to_string(call) + " " +
+                 ETENDUE_COMMAND + " " + arguments);
+}
+
+std::uint32_t samplesHeld(const fs::path& part) {
+    return fs::exists(part) ? static_cast<std::uint32_t>(readPartInfo(part).ranges.count()) : 0;
+}
+
+/// A render that goes on whatever happened, and looks after its part.
+class KilledRender {
+public:
+    explicit KilledRender(const Renders& renders, int threads)
+        : renders_(renders),
+          options_("--checkpoint 1e-9 --resume -s estimator.kind=bdpt --threads " +
+                   std::to_string(threads) + " --samples ") {}
+
+    std::string line(std::uint32_t samples = 1'000'000) const {
+        return renders_.renderLine("k.exr", options_ + std::to_string(samples));
+    }
+    /// After a kill: each part is whole, and no sample that was in one is lost.
+    void checkParts() {
+        for (const char* name : {"k.part.exr", "k.part.old.exr"})
+            if (fs::exists(renders_.path(name)))
+                CHECK_NOTHROW(static_cast<void>(readPart(renders_.path(name))));
+        const std::uint32_t held = samplesHeld(renders_.path("k.part.exr"));
+        CHECK(held >= held_);
+        held_ = held;
+    }
+    /// Finishes it: the bits of a render that nobody disturbed, and nothing left behind.
+    void checkEnd() const {
+        const std::uint32_t samples = held_ + 3;
+        CHECK(run(line(samples)).code == 0);
+        REQUIRE(
+            renders_
+                .render("whole.exr", "-s estimator.kind=bdpt --samples " + std::to_string(samples))
+                .code == 0);
+        CHECK(renders_.pixels("k.exr") == renders_.pixels("whole.exr"));
+        CHECK(renders_.names() == std::vector<std::string>{"k.exr", "s.toml", "whole.exr"});
+        fs::remove(renders_.path("k.exr"));
+    }
+    std::uint32_t held() const { return held_; }
+
+private:
+    const Renders& renders_;
+    std::string options_;
+    std::uint32_t held_ = 0;
+};
+
+/// Of this process, in bytes.
+std::size_t residentBytes() {
+    std::ifstream statm("/proc/self/statm");
+    std::size_t pages = 0, resident = 0;
+    statm >> pages >> resident;
+    return resident * 4096;
+}
+
+std::size_t openFiles() {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator()));
+}
+
+/// In a file system of its own at `mount`, which ends with the line.
+Outcome shellOnDisk(const fs::path& mount, const std::string& size, const std::string& line) {
+    return shell("exec unshare -rm sh -c 'exec 2>&1; mount -t tmpfs -o size=" + size + " none " +
+                 mount.string() + " && { " + line + "; }'");
+}
+
+}  // namespace
+
+TEST_SUITE_BEGIN("statistical");
+
+TEST_CASE("Unkind machine: killed at any time, a render goes on to the same bits") {
+    const Renders renders;
+    // Some before it begins, most while it renders, however long a start takes here.
+    const auto start = std::chrono::steady_clock::now();
+    REQUIRE(renders.render("x.exr", "--samples 1").code == 0);
+    const std::chrono::duration<double> startSeconds = std::chrono::steady_clock::now() - start;
+    fs::remove(renders.path("x.exr"));
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> share(0.5, 2.5);
+    int kills = 0;
+    for (const int threads : {1, 2, 4}) {
+        CAPTURE(threads);
+        KilledRender render(renders, threads);
+        for (int i = 0; i < 34; ++i) {
+            const double seconds = share(random) * startSeconds.count();
+            const Outcome outcome = shell("timeout -s KILL " + std::to_string(seconds) + " " +
+                                          ETENDUE_COMMAND + " " + render.line());
+            kills += outcome.code == killed;
+            render.checkParts();
+        }
+        CHECK(render.held() > 0);
+        render.checkEnd();
+    }
+    CHECK(kills == 102);
+    MESSAGE(kills << " kills at random times");
+}
+
+TEST_CASE("Unkind machine: killed in the middle of writing a part, it has the old one or the new") {
+    const Renders renders;
+    int kills = 0;
+    for (const int threads : {1, 2, 4}) {
+        CAPTURE(threads);
+        KilledRender render(renders, threads);
+        for (int call = 1; call <= 34; ++call) {
+            CAPTURE(call);
+            kills += killAtCall(call, render.line()).code == killed;
+            render.checkParts();
+        }
+        CHECK(render.held() > 34);
+        render.checkEnd();
+    }
+    CHECK(kills == 102);
+    MESSAGE(kills << " kills inside the write of a part");
+}
+
+TEST_CASE("Unkind machine: killed while a picture is written, there is the old one or the new") {
+    const Renders renders;
+    REQUIRE(renders.render("a.part.exr", "--range 0:1").code == 0);
+    REQUIRE(renders.render("b.part.exr", "--range 1:2").code == 0);
+    REQUIRE(renders.merge({"a.part.exr"}, "old.exr").code == 0);
+    REQUIRE(renders.merge({"a.part.exr", "b.part.exr"}, "new.exr").code == 0);
+    const std::vector<float> before = renders.pixels("old.exr"), after = renders.pixels("new.exr");
+    fs::copy(renders.path("old.exr"), renders.path("x.exr"));
+    const std::string line = "merge " + renders.path("a.part.exr").string() + " " +
+                             renders.path("b.part.exr").string() + " -o " +
+                             renders.path("x.exr").string();
+    int kills = 0;
+    while (killAtCall(kills + 1, line).code == killed) {
+        ++kills;
+        CAPTURE(kills);
+        const std::vector<float> pixels = renders.pixels("x.exr");
+        CHECK((pixels == before || pixels == after));
+    }
+    CHECK(renders.pixels("x.exr") == after);
+    CHECK(kills >= 4);
+    MESSAGE(kills << " kills, one at each call that changes a file");
+}
+
+TEST_CASE("Unkind machine: a full disk is an error, and what is there stays whole") {
+    const Renders renders;
+    REQUIRE(renders.render("whole.exr", "--samples 6").code == 0);
+    const std::vector<float> whole = renders.pixels("whole.exr");
+    fs::create_directories(renders.path("disk"));
+    int errors = 0, pictures = 0, resumed = 0;
+    for (int kilobytes = 4; kilobytes <= 120; kilobytes += 4) {
+        CAPTURE(kilobytes);
+        const std::string options = "--samples 6 --checkpoint 1e-9 --resume";
+        const Outcome outcome = shellOnDisk(
+            renders.path("disk"), std::to_string(kilobytes) + "k",
+            std::string(ETENDUE_COMMAND) + " " + renders.renderLine("disk/x.exr", options) +
+                "; code=$?; cp -r " + renders.path("disk").string() + " " +
+                renders.path("left").string() + "; exit $code");
+        CAPTURE(outcome.output);
+        if (outcome.code == 0) {
+            ++pictures;
+            CHECK(renders.pixels("left/x.exr") == whole);
+        } else {
+            ++errors;
+            CHECK(outcome.code == 1);
+            CHECK(contains(outcome.output, "x.exr: cannot write: No space left on device"));
+            CHECK_FALSE(fs::exists(renders.path("left/x.exr")));
+            // Elsewhere it goes on from what it has.
+            resumed += fs::exists(renders.path("left/x.part.exr"));
+            REQUIRE(renders.render("left/x.exr", options).code == 0);
+            CHECK(renders.pixels("left/x.exr") == whole);
+        }
+        fs::remove_all(renders.path("left"));
+    }
+    CHECK(errors > 0);
+    CHECK(pictures > 0);
+    CHECK(resumed > 0);
+    MESSAGE(errors << " sizes too small, " << resumed << " of them with a part; " << pictures
+                   << " large enough");
+}
+
+TEST_CASE("Unkind machine: a folder that may not be written is an error at once") {
+    const Renders renders;
+    REQUIRE(renders.render("a.part.exr", "--range 0:1").code == 0);
+    fs::create_directories(renders.path("disk"));
+    const auto check = [&](const std::string& line) {
+        const Outcome outcome = shellOnDisk(renders.path("disk"), "1m",
+                                            "mount -o remount,ro " + renders.path("disk").string() +
+                                                "; " + ETENDUE_COMMAND + std::string(" ") + line);
+        CAPTURE(outcome.output);
+        CHECK(outcome.code == 1);
+        CHECK(contains(outcome.output, "disk/"));
+        CHECK(contains(outcome.output, "Read-only file system"));
+    };
+    check(renders.renderLine("disk/x.exr", "--samples 1000000"));
+    check("merge " + renders.path("a.part.exr").string() + " -o " +
+          renders.path("disk/x.exr").string());
+}
+
+TEST_CASE("Unkind machine: a folder in the place of an output is an error at once") {
+    const Renders renders;
+    fs::create_directories(renders.path("x.exr"));
+    fs::create_directories(renders.path("y.part.exr"));
+    const std::pair<const char*, const char*> cases[] = {
+        {"x.exr", "x.exr"}, {"y.exr", "y.part.exr"}, {"y.part.exr", "y.part.exr"}};
+    for (const auto& [output, folder] : cases) {
+        const Outcome outcome = renders.render(output, "--samples 1000000");
+        CAPTURE(outcome.output);
+        CHECK(outcome.code == 65);
+        CHECK(contains(outcome.output, folder));
+        CHECK(contains(outcome.output, "folder"));
+    }
+}
+
+TEST_CASE("Unkind machine: too little memory is an error, never another picture") {
+    const Renders renders;
+    REQUIRE(renders.render("whole.exr", "--samples 2").code == 0);
+    const std::vector<float> whole = renders.pixels("whole.exr");
+    int starts = 0, errors = 0, pictures = 0;
+    for (int megabytes = 100; pictures < 12; megabytes += 1 + megabytes / 100) {
+        CAPTURE(megabytes);
+        const std::string limited =
+            "ulimit -v " + std::to_string(megabytes * 1024) + "; exec " + ETENDUE_COMMAND + " ";
+        // With less than some 500 MB the system does not get as far as the program: it maps and
+        // starts the libraries.
+        starts = shell(limited + "--version").code == 0 ? starts + 1 : 0;
+        if (starts < 3) continue;
+        const Outcome outcome =
+            shell(limited + renders.renderLine("x.exr", "--samples 2 --threads 2"));
+        CAPTURE(outcome.output);
+        if (outcome.code == 0) {
+            ++pictures;
+            CHECK(renders.pixels("x.exr") == whole);
+            fs::remove(renders.path("x.exr"));
+        } else {
+            ++errors;
+            CHECK(outcome.code == 1);
+            CHECK(contains(outcome.output, "memory"));
+        }
+        CHECK(renders.names() == std::vector<std::string>{"s.toml", "whole.exr"});
+    }
+    CHECK(errors > 0);
+    MESSAGE(errors << " limits too small, " << pictures << " large enough");
+}
+
+TEST_CASE("Unkind machine: ten thousand checkpoints leave nothing behind") {
+    const TemporaryFolder folder;
+    const Film film({16, 12, 0, 0, 16, 12}, {}, FilmColor::rgb);
+    PartInfo info;
+    info.window = film.window();
+    PartKeeper keeper(folder / "x.part.exr", info, 0, {});
+    std::size_t bytes = 0, files = 0;
+    for (std::uint32_t checkpoint = 1; checkpoint <= 10'000; ++checkpoint) {
+        keeper.write(film, checkpoint, 1.0, {});
+        if (checkpoint != 1'000) continue;
+        bytes = residentBytes();
+        files = openFiles();
+    }
+    const std::size_t grownBytes = residentBytes() - std::min(bytes, residentBytes());
+    CHECK(grownBytes < 1'000'000);
+    CHECK(openFiles() == files);
+    CHECK(folder.names() == std::vector<std::string>{"x.part.exr", "x.part.old.exr"});
+    CHECK(samplesHeld(folder / "x.part.exr") == 10'000);
+    MESSAGE("9,000 more checkpoints took " << grownBytes << " bytes of memory");
+}
+
+TEST_CASE("Unkind machine: a clock that jumps changes nothing") {
+    const Renders renders;
+    REQUIRE(renders.render("whole.exr", "--samples 9").code == 0);
+    const std::string jumping = "LD_PRELOAD=" ETENDUE_UNKIND_MACHINE " UNKIND_CLOCK=1 ";
+    CHECK(shell(jumping + "date +%Y").output != shell("date +%Y").output);
+    const Outcome outcome =
+        shell(jumping + ETENDUE_COMMAND + " " +
+              renders.renderLine("x.exr", "--samples 9 --checkpoint 0.01 --time 3600"));
+    CAPTURE(outcome.output);
+    CHECK(outcome.code == 0);
+    CHECK(renders.pixels("x.exr") == renders.pixels("whole.exr"));
+}
+
+TEST_CASE("Unkind machine: names with spaces, quotes and letters of all kinds") {
+    const Renders renders;
+    REQUIRE(renders.render("whole.exr", "--samples 4").code == 0);
+    const std::string name = "Étendue „f/2\u00a0·\u00a0光“ it's #1 %s";
+    const std::string folder = renders.path(name).string();
+    fs::create_directories(folder);
+    fs::copy(renders.path("s.toml"), renders.path(name) / "scène.toml");
+    const auto quoted = [&](const std::string& file) {
+        std::string word = "'";
+        for (const char c : folder + "/" + file) word += c == '\'' ? "'\\''" : std::string(1, c);
+        return word + "'";
+    };
+    const std::string begin = "render " + quoted("scène.toml") + " --quiet --size 40,24 -o ";
+    REQUIRE(run(begin + quoted("a b.exr") + " --samples 2 --keep-part").code == 0);
+    REQUIRE(run(begin + quoted("a b.exr") + " --samples 3 --resume --keep-part").code == 0);
+    REQUIRE(run(begin + quoted("ç.part.exr") + " --range 3:4").code == 0);
+    const Outcome merged = run("merge " + quoted("a b.part.exr") + " " + quoted("ç.part.exr") +
+                               " -o " + quoted("ü.exr") + " --preview " + quoted("ü.png"));
+    CAPTURE(merged.output);
+    CHECK(merged.code == 0);
+    CHECK(renders.pixels(name + "/ü.exr") == renders.pixels("whole.exr"));
+    CHECK(fs::exists(renders.path(name) / "ü.png"));
+}
+TEST_SUITE_END();

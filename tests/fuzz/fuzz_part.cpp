@@ -61,7 +61,8 @@ void checkWritten(const FuzzFolder& folder, const Part& part, const Film& film) 
     writePart(file, part.info, film, {});
     const Part again = readPart(file);
     require(differenceOf(part.info, again.info).empty() && part.info.ranges == again.info.ranges &&
-                part.info.unfinishedSamples == again.info.unfinishedSamples,
+                part.info.unfinishedSamples == again.info.unfinishedSamples &&
+                part.info.picture == again.info.picture,
             "a part's header is written otherwise than it was read");
     require(part.state == again.state, "a part's sums are written otherwise than read");
 }

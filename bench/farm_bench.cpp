@@ -4,17 +4,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <cstdio>
 #include <exception>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "bench/farm_costs.h"
-#include "bench/farm_simulation.h"
+#include "bench/farm_model.h"
 #include "renderer/parallel.h"
 #include "tools/machine.h"
 #include "tools/part_keeper.h"
@@ -68,113 +65,6 @@ Options parse(int argc, char** argv) {
     return o;
 }
 
-struct Plan {
-    std::uint32_t tasks = 1;
-    int nodes = 1;
-    std::uint32_t groups = 1;  // merged to parts first, side by side
-};
-
-/// What a simulation takes into account.
-struct Effects {
-    bool start = true, spread = true, writing = true;
-};
-
-class Farm {
-public:
-    Farm(const FarmCosts& costs, const Options& options)
-        : c_(costs),
-          samples_(options.scene.samples),
-          bandwidth_(options.bytesPerSecond),
-          seed_(options.seed) {}
-
-    /// Until the last task is done: the mean over draws of all durations.
-    FarmRun render(const Plan& plan, const Effects& effects) const {
-        const int draws = effects.spread ? 32 : 1;
-        const double s = effects.spread ? c_.spread : 0.0;
-        FarmRun mean;
-        for (int draw = 0; draw < draws; ++draw) {
-            // In pairs, slow for fast: so that few draws of long tasks do not miss the mean.
-            std::mt19937_64 random(seed_ + static_cast<std::uint64_t>(draw / 2));
-            std::normal_distribution<double> normal;
-            const double scale = draw % 2 == 0 ? s : -s;
-            std::vector<FarmJob> jobs;
-            for (std::uint32_t i = 0; i < plan.tasks; ++i) {
-                const double slower = std::exp(scale * normal(random));
-                jobs.push_back(task(taskSeconds(plan) * slower, effects));
-            }
-            const FarmRun run = simulateFarm(jobs, plan.nodes, bandwidth_);
-            mean.wallSeconds += run.wallSeconds / draws;
-            mean.nodeSeconds += run.nodeSeconds / draws;
-        }
-        return mean;
-    }
-    FarmRun merge(const Plan& plan) const {
-        std::vector<FarmJob> jobs;
-        for (std::uint32_t g = 0; g < plan.groups && plan.groups > 1; ++g)
-            jobs.push_back(mergeJob((plan.tasks + g) / plan.groups, true));
-        const FarmRun groups = simulateFarm(jobs, plan.nodes, bandwidth_);
-        const std::uint32_t parts = plan.groups > 1 ? plan.groups : plan.tasks;
-        const FarmRun last = simulateFarm({mergeJob(parts, false)}, 1, bandwidth_);
-        return {groups.wallSeconds + last.wallSeconds, groups.nodeSeconds + last.nodeSeconds};
-    }
-
-    /// The same without spread, and as if all wrote at the same time.
-    double formulaSeconds(const Plan& p) const {
-        const double rounds = std::ceil(1.0 * p.tasks / p.nodes);
-        const double writers = std::min<double>(p.tasks, p.nodes);
-        const double write = c_.encodeSeconds + writers * transferSeconds();
-        double merge = c_.mergeSeconds + p.tasks * mergeSecondsPerPart();
-        if (p.groups > 1)
-            merge = 2.0 * c_.mergeSeconds + c_.mergeSecondsPerPart * p.tasks / p.groups +
-                    p.tasks * transferSeconds() + c_.encodeSeconds +
-                    p.groups * (mergeSecondsPerPart() + transferSeconds());
-        return rounds * (c_.startSeconds + taskSeconds(p) + (1 + checkpoints(p)) * write) + merge;
-    }
-    double taskSeconds(const Plan& p) const { return c_.sampleSeconds * samples_ / p.tasks; }
-    /// On the way of a task.
-    int checkpoints(const Plan& p) const {
-        return static_cast<int>(std::ceil(taskSeconds(p) / interval())) - 1;
-    }
-    double bytesOfParts(const Plan& p) const {
-        return c_.partBytes * p.tasks * (checkpoints(p) > 0 ? 2.0 : 1.0);
-    }
-    /// As many nodes as this render as long as their parts are written and merged.
-    double nodesAtBend() const {
-        return std::sqrt(c_.sampleSeconds * samples_ / (mergeSecondsPerPart() + transferSeconds()));
-    }
-    std::uint32_t samplesOfTask(const Plan& p) const { return samples_ / p.tasks; }
-
-private:
-    double transferSeconds() const { return c_.partBytes / bandwidth_; }
-    /// It is read, then added.
-    double mergeSecondsPerPart() const { return c_.mergeSecondsPerPart + transferSeconds(); }
-    double interval() const {
-        return defaultCheckpointInterval(c_.encodeSeconds + transferSeconds());
-    }
-    FarmJob task(double seconds, const Effects& effects) const {
-        double before = effects.start ? c_.startSeconds : 0.0;
-        if (!effects.writing) return {{before + seconds, 0.0}};
-        FarmJob job;
-        for (; seconds > interval(); seconds -= interval(), before = 0.0)
-            job.push_back({before + interval() + c_.encodeSeconds, c_.partBytes});
-        job.push_back({before + seconds + c_.encodeSeconds, c_.partBytes});
-        return job;
-    }
-    FarmJob mergeJob(std::uint32_t parts, bool writesPart) const {
-        FarmJob job{{c_.mergeSeconds, c_.partBytes}};
-        for (std::uint32_t i = 1; i < parts; ++i)
-            job.push_back({c_.mergeSecondsPerPart, c_.partBytes});
-        job.push_back({c_.mergeSecondsPerPart + (writesPart ? c_.encodeSeconds : 0.0),
-                       writesPart ? c_.partBytes : 0.0});
-        return job;
-    }
-
-    FarmCosts c_;
-    std::uint32_t samples_;
-    double bandwidth_;
-    std::uint64_t seed_;
-};
-
 void printCosts(const Options& o, const FarmCosts& c) {
     const Machine machine = thisMachine();
     fmt::print("{}, {}, {} × {}; {}, {} threads, load {:.1f}\n\n", o.scene.scene.string(),
@@ -202,7 +92,7 @@ void printCosts(const Options& o, const FarmCosts& c) {
         100.0 * c.checkpointSeconds / defaultCheckpointInterval(0.0));
 }
 
-void printRow(const Farm& farm, const Plan& plan, double secondsOfOne) {
+void printRow(const FarmModel& farm, const DealtOut& plan, double secondsOfOne) {
     const double plain = farm.render(plan, {false, false, false}).wallSeconds;
     const double started = farm.render(plan, {true, false, false}).wallSeconds;
     const double spread = farm.render(plan, {true, true, false}).wallSeconds;
@@ -221,7 +111,7 @@ void printRow(const Farm& farm, const Plan& plan, double secondsOfOne) {
 }
 
 void printFarms(const Options& o, const FarmCosts& costs) {
-    const Farm farm(costs, o);
+    const FarmModel farm(costs, o.scene.samples, o.bytesPerSecond, o.seed);
     const FarmRun one = farm.render({}, {}), oneMerge = farm.merge({});
     fmt::print("\n{} samples per pixel; a file system of {:.0f} MB/s for all nodes\n\n",
                o.scene.samples, 1e-6 * o.bytesPerSecond);
@@ -230,13 +120,28 @@ void printFarms(const Options& o, const FarmCosts& costs) {
         "writing s | merge s | wall s | by formula | node hours | GB of parts | speed-up | "
         "efficiency |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|"
         "\n");
-    const Plan plans[] = {{1, 1},    {8, 8},    {64, 64},   {512, 512},    {512, 512, 22},
-                          {128, 64}, {512, 64}, {4096, 64}, {4096, 64, 64}};
-    for (const Plan& plan : plans)
+    const double bend = farm.nodesAtBend(), merging = farm.nodesAtBendOfMerge();
+    const auto asManyNodes = [](double tasks) {
+        return DealtOut{static_cast<std::uint32_t>(tasks), static_cast<int>(tasks)};
+    };
+    const DealtOut plans[] = {{1, 1},
+                              {8, 8},
+                              {64, 64},
+                              {512, 512},
+                              {512, 512, 22},
+                              asManyNodes(bend / 3.0),
+                              asManyNodes(bend),
+                              {128, 64},
+                              {512, 64},
+                              {4096, 64},
+                              {4096, 64, 64}};
+    for (const DealtOut& plan : plans)
         if (plan.tasks <= o.scene.samples)
             printRow(farm, plan, one.wallSeconds + oneMerge.wallSeconds);
-    const double bend = farm.nodesAtBend();
-    fmt::print("\nbends at {:.0f} nodes, {:.0f} samples a task\n", bend, o.scene.samples / bend);
+    fmt::print(
+        "\nbends at {:.0f} nodes, {:.0f} samples a task; were the file system no limit, at "
+        "{:.0f} nodes, {:.0f} samples\n",
+        bend, o.scene.samples / bend, merging, o.scene.samples / merging);
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ struct ProcessRun {
 /// Its memory counts from what this process holds when it begins.
 ProcessRun runProcess(const std::vector<std::string>& words) {
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     malloc_trim(0);

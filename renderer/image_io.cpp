@@ -330,9 +330,11 @@ std::optional<ExrChannels> readExrChannels(const std::filesystem::path& file,
 }
 
 Bytes encodeExr(const std::filesystem::path& file, const FrameWindow& window,
-                const std::vector<ExrChannels>& layers, const Metadata& metadata) {
+                const std::vector<ExrChannels>& layers, const Metadata& metadata,
+                ExrCompression compression) {
     checkLayers(window, layers);
-    const OIIO::ImageSpec spec = exrSpec(window, layers, metadata);
+    OIIO::ImageSpec spec = exrSpec(window, layers, metadata);
+    spec.attribute("compression", compression == ExrCompression::zip ? "zip" : "none");
     const auto width = static_cast<std::size_t>(window.width);
     std::vector<float> row(width * static_cast<std::size_t>(spec.nchannels));
     const auto interleave = [&](int y) -> const void* {

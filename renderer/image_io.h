@@ -60,10 +60,14 @@ struct FrameWindow {
     friend bool operator==(const FrameWindow&, const FrameWindow&) = default;
 };
 
-/// The bytes of the file that writeExr() writes.
+enum class ExrCompression { none, zip };
+
+/// The bytes of the file that writeExr() writes, or those of one without compression: noise does
+/// not compress, and trying takes twenty times as long as the rest.
 std::vector<unsigned char> encodeExr(const std::filesystem::path& file, const FrameWindow& window,
                                      const std::vector<ExrChannels>& layers,
-                                     const Metadata& metadata);
+                                     const Metadata& metadata,
+                                     ExrCompression compression = ExrCompression::zip);
 
 /// 32-bit float, ZIP, bit for bit (NaN and infinity too), through writeFileAtomically, whose errors
 /// it throws. Equal arguments give equal bytes: there is no date but a capDate in `metadata`.

@@ -167,7 +167,7 @@ void writePart(const fs::path& file, const PartInfo& info, const Film& film,
     Writer writer(atomic);
     {
         const std::vector<unsigned char> picture =
-            encodeExr(file, film.window(), film.channels(), metadata);
+            encodeExr(file, film.window(), film.channels(), metadata, ExrCompression::none);
         writer.write(picture);
     }
     Trailer trailer{magic, writer.size(), 0, {}};

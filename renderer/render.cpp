@@ -227,12 +227,14 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
     if (partsDone >= parts.size())
         throw std::invalid_argument("render: the film's unfinished sample has more parts than it");
     std::uint64_t allPartsDone = 0;
+    double batchSeconds = 0.0;  // without what onBatch takes
     while (result.samples < settings.samples && !result.wasInterrupted &&
            (partsDone > 0 || result.seconds < settings.timeLimitSeconds)) {
         const Batch batch = nextBatch(
             settings.firstSample + result.samples, settings.samples - result.samples, partsDone,
-            parts.size(), static_cast<double>(allPartsDone) / std::max(result.seconds, 1e-9),
+            parts.size(), static_cast<double>(allPartsDone) / std::max(batchSeconds, 1e-9),
             settings.timeLimitSeconds - result.seconds, settings.threads);
+        const auto batchStart = std::chrono::steady_clock::now();
         const std::size_t count = batch.endPart - batch.beginPart;
         const auto batchParts = std::span(parts).subspan(batch.beginPart, count);
         const bool isUnfinished = count < parts.size();
@@ -250,6 +252,7 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
             film.addSamples(batch.sampleCount);
             result.samples += batch.sampleCount;
         }
+        batchSeconds += secondsSince(batchStart);
         result.seconds = secondsSince(start);
         const double samples =
             result.samples + static_cast<double>(partsDone) / static_cast<double>(parts.size());

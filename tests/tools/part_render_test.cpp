@@ -31,6 +31,8 @@ TEST_CASE("Part: ranges add up to the render of all, bit for bit, in any order")
         CHECK(merged.code == 0);
         CHECK(contains(merged.output, "samples 0:11, bit for bit"));
         CHECK(renders.pixels("m.exr") == renders.pixels("whole.exr"));
+        for (const char* name : {"worldToCamera", "aperture", "focus", "etendue:estimator"})
+            CHECK(contains(readFile(renders.path("m.exr")), name));
         // A part of parts is a part.
         REQUIRE(renders.merge({"b.part.exr", "c.part.exr"}, "bc.part.exr").code == 0);
         REQUIRE(renders.merge({"bc.part.exr", "a.part.exr"}, "m2.exr").code == 0);

@@ -4,4 +4,4 @@ set -eu
 cd "$(dirname "$0")/.."
 tools/setup.sh --test
 tools/build.sh release -DBUILD_TESTING=ON
-ctest --test-dir build/release --output-on-failure "$@"
+ctest --test-dir build/release --output-on-failure --parallel "$(nproc)" "$@"

@@ -95,6 +95,14 @@ Outcome shellOnDisk(const fs::path& mount, const std::string& size, const std::s
                  mount.string() + " && { " + line + "; }'");
 }
 
+/// Says so where the system allows no such thing (some containers).
+bool canMount(const fs::path& mount) {
+    fs::create_directories(mount);
+    const bool can = shellOnDisk(mount, "1m", "true").code == 0;
+    WARN_MESSAGE(can, "no file system may be mounted here: nothing is tested");
+    return can;
+}
+
 }  // namespace
 
 TEST_SUITE_BEGIN("statistical");
@@ -171,7 +179,7 @@ TEST_CASE("Unkind machine: a full disk is an error, and what is there stays whol
     const Renders renders;
     REQUIRE(renders.render("whole.exr", "--samples 6").code == 0);
     const std::vector<float> whole = renders.pixels("whole.exr");
-    fs::create_directories(renders.path("disk"));
+    if (!canMount(renders.path("disk"))) return;
     int errors = 0, pictures = 0, resumed = 0;
     for (int kilobytes = 4; kilobytes <= 120; kilobytes += 4) {
         CAPTURE(kilobytes);
@@ -207,7 +215,7 @@ TEST_CASE("Unkind machine: a full disk is an error, and what is there stays whol
 TEST_CASE("Unkind machine: a folder that may not be written is an error at once") {
     const Renders renders;
     REQUIRE(renders.render("a.part.exr", "--range 0:1").code == 0);
-    fs::create_directories(renders.path("disk"));
+    if (!canMount(renders.path("disk"))) return;
     const auto check = [&](const std::string& line) {
         const Outcome outcome = shellOnDisk(renders.path("disk"), "1m",
                                             "mount -o remount,ro " + renders.path("disk").string() +

@@ -247,7 +247,8 @@ TEST_CASE("Path tracer: in an open white furnace every lossless material is invi
     checkFurnaces(openSky, 1000, 0.05);
 }
 
-TEST_CASE("Path tracer: in a closed white furnace every lossless material is invisible") {
+TEST_CASE("Path tracer: in a closed white furnace every lossless material is invisible" *
+          doctest::test_suite("statistical")) {
     checkFurnaces(closedBox, 400, 0.08);
 }
 

@@ -88,7 +88,8 @@ TEST_CASE("Bench agreement: time reckoned by a table gives the same samples in e
               .code == 1);
 }
 
-TEST_CASE("Bench agreement: names that do not exist are told with the nearest that does") {
+TEST_CASE("Bench agreement: names that do not exist are told with the nearest that does" *
+          doctest::test_suite("statistical")) {
     const Scenes scenes;
     const Outcome scene = run(scenes.arguments() + " bux");
     CHECK(scene.code == 66);

@@ -27,7 +27,8 @@ TEST_CASE("Command: --help teaches, --version names, no command is wrong usage")
     CHECK(run("render").code == 64);
 }
 
-TEST_CASE("Command: an option that makes no sense is wrong usage, in one clear line") {
+TEST_CASE("Command: an option that makes no sense is wrong usage, in one clear line" *
+          doctest::test_suite("statistical")) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", smallScene).string();
     const std::string out = (folder.path() / "o.exr").string();

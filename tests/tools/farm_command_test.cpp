@@ -55,7 +55,8 @@ auto linesOf(const std::string& text) { return std::count(text.begin(), text.end
 
 }  // namespace
 
-TEST_CASE("Farm: what is listed renders the picture of one render, and then nothing is missing") {
+TEST_CASE("Farm: what is listed renders the picture of one render, and then nothing is missing" *
+          doctest::test_suite("statistical")) {
     const Farm farm;
     const Outcome all = farm.run("list");
     CHECK(all.code == 0);
@@ -77,7 +78,8 @@ TEST_CASE("Farm: what is listed renders the picture of one render, and then noth
     CHECK_MESSAGE(same.code == 0, same.output);
 }
 
-TEST_CASE("Farm: tasks that are missing, damaged or incomplete are told, and the others left out") {
+TEST_CASE("Farm: tasks that are missing, damaged or incomplete are told, and the others left out" *
+          doctest::test_suite("statistical")) {
     const Farm farm;
     REQUIRE(farm.run("list").code == 0);
     REQUIRE(farm.renderAll() == 0);
@@ -99,7 +101,8 @@ TEST_CASE("Farm: tasks that are missing, damaged or incomplete are told, and the
     CHECK(contains(farm.run("list").output, "all 4 tasks are rendered"));
 }
 
-TEST_CASE("Farm: a folder of another picture is refused, with the setting that differs") {
+TEST_CASE("Farm: a folder of another picture is refused, with the setting that differs" *
+          doctest::test_suite("statistical")) {
     const Farm farm;
     REQUIRE(farm.run("list").code == 0);
     const auto camera = farm.folder.write("camera.toml", "[camera]\nfov = 30\n").string();
@@ -124,7 +127,8 @@ TEST_CASE("Farm: a folder of another picture is refused, with the setting that d
     CHECK(contains(farm.run("list").output, "scene_hash: "));
 }
 
-TEST_CASE("Farm: bad input is an error before anything is written or queued") {
+TEST_CASE("Farm: bad input is an error before anything is written or queued" *
+          doctest::test_suite("statistical")) {
     const Farm farm;
     CHECK(farm.run("slurm", "--submit -s camera.fow=3").code == 65);
     CHECK(etendue::run("farm list no.toml -o x --samples 8 --task-samples 2").code == 66);

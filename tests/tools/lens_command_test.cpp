@@ -46,7 +46,8 @@ TEST_CASE(
     CHECK(contains(missing.output, "tessar-100mm"));
 }
 
-TEST_CASE("Lens command: a setting that is no number, or beyond all lenses, is wrong usage") {
+TEST_CASE("Lens command: a setting that is no number, or beyond all lenses, is wrong usage" *
+          doctest::test_suite("statistical")) {
     const std::vector<std::pair<const char*, const char*>> cases{
         {"--sensor nan,nan", "expected a number from 0.001 to 100000"},
         {"--sensor 1e9,1", "expected a number from 0.001 to 100000"},
@@ -89,7 +90,8 @@ TEST_CASE("Lens command: draw writes a whole picture with every field") {
     CHECK(run("lens draw tessar-100mm --wavelengths 200 -o " + svg).code == 64);
 }
 
-TEST_CASE("Lens command: fit reports its errors, and the second run takes it from the cache") {
+TEST_CASE("Lens command: fit reports its errors, and the second run takes it from the cache" *
+          doctest::test_suite("statistical")) {
     const TemporaryFolder folder;
     const std::string setting = "XDG_CACHE_HOME=" + folder.path().string();
     const std::string arguments = "lens fit tessar-100mm --terms 8 --degree 5";
@@ -126,7 +128,8 @@ TEST_CASE("Lens command: what is written goes through a link and never replaces 
     CHECK(contains(readFile(folder.path() / "target.svg"), "<svg"));
 }
 
-TEST_CASE("Lens command: a fit is written through links and into pipes, which stay what they are") {
+TEST_CASE("Lens command: a fit is written through links and into pipes, which stay what they are" *
+          doctest::test_suite("statistical")) {
     const TemporaryFolder folder;
     folder.write("target.json", "old");
     std::filesystem::create_symlink("target.json", folder.path() / "link.json");

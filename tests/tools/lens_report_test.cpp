@@ -94,7 +94,8 @@ TEST_CASE(
           doctest::Approx(curves.fieldCurvature.back().sagittalMm));
 }
 
-TEST_CASE("Lens report: an anamorphic lens is looked at in both of its planes") {
+TEST_CASE("Lens report: an anamorphic lens is looked at in both of its planes" *
+          doctest::test_suite("statistical")) {
     const OwnCache cache;
     LensReportCommand command = quickReport("anamorphic-80x90mm");
     command.options.degree = 5;

@@ -16,7 +16,8 @@ using namespace etendue;
 
 namespace fs = std::filesystem;
 
-TEST_CASE("Part: ranges add up to the render of all, bit for bit, in any order") {
+TEST_CASE("Part: ranges add up to the render of all, bit for bit, in any order" *
+          doctest::test_suite("statistical")) {
     const Renders renders;
     for (const std::string kind : {"pt", "lt", "bdpt"}) {
         CAPTURE(kind);
@@ -40,7 +41,8 @@ TEST_CASE("Part: ranges add up to the render of all, bit for bit, in any order")
     }
 }
 
-TEST_CASE("Part: a render goes on from its part to the bits of one that did not stop") {
+TEST_CASE("Part: a render goes on from its part to the bits of one that did not stop" *
+          doctest::test_suite("statistical")) {
     const Renders renders;
     for (const std::string kind : {"pt", "bdpt"}) {
         CAPTURE(kind);
@@ -57,7 +59,8 @@ TEST_CASE("Part: a render goes on from its part to the bits of one that did not 
     }
 }
 
-TEST_CASE("Part: what does not belong together is refused, and the difference named") {
+TEST_CASE("Part: what does not belong together is refused, and the difference named" *
+          doctest::test_suite("statistical")) {
     const Renders renders;
     REQUIRE(renders.render("a.part.exr", "--range 0:2").code == 0);
     const auto refusal = [&](const std::string& options) {
@@ -149,7 +152,8 @@ TEST_CASE("Part: a second process on the same output is refused") {
     CHECK(run("render " + scene + " -o " + x + " --quiet --restart --samples 1").code == 0);
 }
 
-TEST_CASE("Part: SIGUSR1 writes it while the render goes on; --error ends one") {
+TEST_CASE("Part: SIGUSR1 writes it while the render goes on; --error ends one" *
+          doctest::test_suite("statistical")) {
     const Renders renders;
     const std::string scene = renders.path("s.toml").string();
     const std::string x = renders.path("x.exr").string();

@@ -11,7 +11,7 @@
 namespace etendue {
 
 struct Outcome {
-    int code;  // of one that a signal ended, 128 more than that, as a shell says it
+    int code;            // of one that a signal ended, 128 more than that, as a shell says it
     std::string output;  // both streams
 };
 

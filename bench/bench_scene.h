@@ -17,11 +17,12 @@ inline double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
+/// Embree works on no more than `threads` threads from then on, in all of the process.
 inline LoadedScene loadForBench(const std::filesystem::path& file, int width, int height,
-                                std::vector<std::string> overrides = {}) {
+                                std::vector<std::string> overrides = {}, int threads = 2) {
     overrides.push_back("film.width=" + std::to_string(width));
     overrides.push_back("film.height=" + std::to_string(height));
-    return loadScene(file, {std::move(overrides), 2, fitCacheDirectory()});
+    return loadScene(file, {std::move(overrides), threads, fitCacheDirectory()});
 }
 
 inline Filter filterOf(const LoadedScene& loaded) {

@@ -167,8 +167,8 @@ void measureMerges(const FarmScene& scene, const TemporaryFolder& folder, int mo
 
 /// Renders with and without checkpoints in turn, many of them, as `etendue render` does.
 void measureCheckpoints(const FarmScene& scene, const fs::path& file, FarmCosts& costs) {
-    const LoadedScene loaded =
-        loadForBench(scene.scene, scene.width, scene.height, {"estimator.kind=" + scene.estimator});
+    const LoadedScene loaded = loadForBench(scene.scene, scene.width, scene.height,
+                                            {"estimator.kind=" + scene.estimator}, scene.threads);
     const FilmLayers layers{.luminanceVariance = true};
     RenderSettings settings;
     settings.samples =
@@ -214,6 +214,8 @@ FarmCosts measureFarmCosts(const FarmScene& scene, const fs::path& path, int mos
     costs.startSeconds = median(besides) - costs.writeSeconds;
     measureMerges(scene, folder, mostParts, costs);
     measureCheckpoints(scene, folder / "checkpoint.part.exr", costs);
+    for (const fs::directory_entry& file : fs::directory_iterator(path))
+        costs.folderBytes += static_cast<double>(file.file_size());
     return costs;
 }
 

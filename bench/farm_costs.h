@@ -27,8 +27,9 @@ struct MergeCost {
 struct FarmCosts {
     double startSeconds = 0.0;   // all that a task does beside rendering and writing
     double sampleSeconds = 0.0;  // of the whole frame
-    double spread = 0.0;         // standard deviation of the logarithm of a task's duration
+    double spread = 0.0;         // standard deviation of ln(sampleSeconds)
     double partBytes = 0.0;
+    double folderBytes = 0.0;             // all that was measured with, in the end
     double encodeSeconds = 0.0;           // to write a part into memory
     double writeSeconds = 0.0;            // to write it into the folder, synced
     double checkpointWriteSeconds = 0.0;  // the same on the way of a render, which waits
@@ -37,7 +38,7 @@ struct FarmCosts {
     double mergeSeconds = 0.0, mergeSecondsPerPart = 0.0;  // the line through them
 };
 
-/// Needs room for `mostParts` parts in the folder, which is made and removed.
+/// Needs room for `mostParts` parts and a few more in the folder, which is made and removed.
 FarmCosts measureFarmCosts(const FarmScene& scene, const std::filesystem::path& folder,
                            int mostParts);
 

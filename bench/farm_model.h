@@ -8,7 +8,7 @@
 
 namespace etendue {
 
-/// A picture, to nodes.
+/// How a picture is dealt out.
 struct DealtOut {
     std::uint32_t tasks = 1;
     int nodes = 1;
@@ -25,7 +25,7 @@ public:
     /// `samples`: of the picture. `seed`: of the tasks' durations.
     FarmModel(const FarmCosts& costs, std::uint32_t samples, double bytesPerSecond,
               std::uint64_t seed)
-        : c_(costs), samples_(samples), bandwidth_(bytesPerSecond), seed_(seed) {}
+        : costs_(costs), samples_(samples), bandwidth_(bytesPerSecond), seed_(seed) {}
 
     /// Until the last task is done: the mean over draws of all durations.
     FarmRun render(const DealtOut& plan, const FarmEffects& effects) const;
@@ -34,7 +34,7 @@ public:
     double formulaSeconds(const DealtOut& plan) const;
 
     double bytesOfParts(const DealtOut& plan) const;
-    std::uint32_t samplesOfTask(const DealtOut& plan) const { return samples_ / plan.tasks; }
+    double samplesOfTask(const DealtOut& plan) const { return 1.0 * samples_ / plan.tasks; }
     /// So many nodes render as long as the parts of all are written and merged; and as long as they
     /// would be merged if the file system took no time.
     double nodesAtBend() const;
@@ -42,15 +42,17 @@ public:
 
 private:
     double taskSeconds(const DealtOut& plan) const;
-    double transferSeconds() const { return c_.partBytes / bandwidth_; }
-    /// From one checkpoint to the next.
-    double interval() const;
+    double transferSeconds() const { return costs_.partBytes / bandwidth_; }
+    /// A part, while all nodes write one.
+    double writeSeconds(const DealtOut& plan) const;
+    /// From one checkpoint to the next, as if every time all nodes wrote theirs together.
+    double checkpointIntervalSeconds(const DealtOut& plan) const;
     /// On the way of a task that renders so long.
-    int checkpointsIn(double seconds) const;
-    FarmJob task(double seconds, const FarmEffects& effects) const;
+    int checkpointsIn(const DealtOut& plan, double seconds) const;
+    FarmJob task(const DealtOut& plan, double seconds, const FarmEffects& effects) const;
     FarmJob mergeJob(std::uint32_t parts, bool writesPart) const;
 
-    FarmCosts c_;
+    FarmCosts costs_;
     std::uint32_t samples_;
     double bandwidth_;
     std::uint64_t seed_;

@@ -12,14 +12,19 @@ struct Running {
     const FarmJob* job = nullptr;
     std::size_t phase = 0;
     bool isTransferring = false, isDone = false;
-    double left = 0.0;  // s, or bytes
+    double secondsLeft = 0.0, bytesLeft = 0.0;  // of what it is at
 
-    explicit Running(const FarmJob& started) : job(&started), left(started.front().seconds) {}
+    explicit Running(const FarmJob& started)
+        : job(&started), secondsLeft(started.front().seconds) {}
     void goOn() {
         isTransferring = !isTransferring;
         if (!isTransferring) ++phase;
         isDone = phase == job->size();
-        if (!isDone) left = isTransferring ? (*job)[phase].bytes : (*job)[phase].seconds;
+        if (isDone) return;
+        if (isTransferring)
+            bytesLeft = (*job)[phase].bytes;
+        else
+            secondsLeft = (*job)[phase].seconds;
     }
 };
 
@@ -33,18 +38,22 @@ FarmRun simulateFarm(const std::vector<FarmJob>& jobs, int nodes, double bytesPe
             running.emplace_back(*next++);
         if (running.empty()) return run;
         const auto transfers = std::ranges::count_if(running, &Running::isTransferring);
-        const double share = bytesPerSecond / static_cast<double>(std::max(transfers, {1}));
-        const auto secondsLeft = [&](const Running& r) {
-            return r.isTransferring ? r.left / share : r.left;
+        const double bytesPerSecondEach =
+            bytesPerSecond / static_cast<double>(std::max(transfers, {1}));
+        const auto secondsToGoOn = [&](const Running& r) {
+            return r.isTransferring ? r.bytesLeft / bytesPerSecondEach : r.secondsLeft;
         };
         double step = std::numeric_limits<double>::infinity();
-        for (const Running& r : running) step = std::min(step, secondsLeft(r));
+        for (const Running& r : running) step = std::min(step, secondsToGoOn(r));
         run.wallSeconds += step;
         run.nodeSeconds += step * static_cast<double>(running.size());
-        constexpr double together = 1e-9;  // s: what rounding parts
+        constexpr double sameMomentSeconds = 1e-9;  // apart only by rounding
         for (Running& r : running) {
-            const bool goesOn = secondsLeft(r) - step < together;
-            r.left -= r.isTransferring ? step * share : step;
+            const bool goesOn = secondsToGoOn(r) - step < sameMomentSeconds;
+            if (r.isTransferring)
+                r.bytesLeft -= step * bytesPerSecondEach;
+            else
+                r.secondsLeft -= step;
             if (goesOn) r.goOn();
         }
         std::erase_if(running, [](const Running& r) { return r.isDone; });

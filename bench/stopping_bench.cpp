@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <utility>
 
@@ -114,15 +116,7 @@ void compareRules(const std::string& name, const LoadedScene& loaded, std::size_
     std::fflush(stdout);
 }
 
-}  // namespace
-}  // namespace etendue
-
-/// Arguments: the project's folder, most samples of a pixel (512), seeds (24).
-int main(int argc, char** argv) {
-    using namespace etendue;
-    const std::filesystem::path project = argc > 1 ? argv[1] : ".";
-    const auto samples = static_cast<std::size_t>(argc > 2 ? std::atoi(argv[2]) : 512);
-    const auto seeds = static_cast<std::uint64_t>(argc > 3 ? std::atoi(argv[3]) : 24);
+void compareScenes(const std::filesystem::path& project, std::size_t samples, std::uint64_t seeds) {
     struct Sight {
         const char* scene;
         const char* estimator;
@@ -135,17 +129,33 @@ int main(int argc, char** argv) {
                             {"still-life", "pt"},
                             {"hidden-light", "pt"},
                             {"hidden-light", "bdpt", noSplats}};
-    fmt::print("{} × {} pixels, at most {} samples, {} seeds; per cent\n", stoppingWidth,
-               stoppingHeight, samples, seeds);
-    fmt::print("{:<18}{:>8}{:>8}{:>14}{:>18}{:>18}{:>15}{:>10}\n", "  rule", "samples", "error",
-               "bias ± 99 %", "long-tailed", "others", "worst tile", "biased");
     for (const Sight& sight : sights) {
         std::vector<std::string> keys = sight.keys;
         keys.push_back(std::string("estimator.kind=") + sight.estimator);
         compareRules(std::string(sight.scene) + ", " + sight.estimator,
                      loadForBench(project / "scenes" / sight.scene / "scene.toml", stoppingWidth,
-                                  stoppingHeight, keys),
+                                  stoppingHeight, keys, hardwareThreads()),
                      samples, seeds);
     }
-    return 0;
+}
+
+}  // namespace
+}  // namespace etendue
+
+/// Arguments: the project's folder, most samples of a pixel (512), seeds (24).
+int main(int argc, char** argv) {
+    using namespace etendue;
+    const std::filesystem::path project = argc > 1 ? argv[1] : ".";
+    const auto samples = static_cast<std::size_t>(argc > 2 ? std::atoi(argv[2]) : 512);
+    const auto seeds = static_cast<std::uint64_t>(argc > 3 ? std::atoi(argv[3]) : 24);
+    try {
+        fmt::print("{} × {} pixels, at most {} samples, {} seeds; per cent\n", stoppingWidth,
+                   stoppingHeight, samples, seeds);
+        fmt::print("{:<18}{:>8}{:>8}{:>14}{:>18}{:>18}{:>15}{:>10}\n", "  rule", "samples", "error",
+                   "bias ± 99 %", "long-tailed", "others", "worst tile", "biased");
+        compareScenes(project, samples, seeds);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "stopping_bench: {}\n", error.what());
+        return 1;
+    }
 }

@@ -63,7 +63,7 @@ struct FrameWindow {
 enum class ExrCompression { none, zip };
 
 /// The bytes of the file that writeExr() writes, or those of one without compression: noise does
-/// not compress, and trying takes twenty times as long as the rest.
+/// not compress, and trying takes far longer than the rest.
 std::vector<unsigned char> encodeExr(const std::filesystem::path& file, const FrameWindow& window,
                                      const std::vector<ExrChannels>& layers,
                                      const Metadata& metadata,

@@ -160,6 +160,10 @@ private:
     std::shared_ptr<const ConfigNode> root_;  // never changed, only replaced
 };
 
+/// The text, with U+FFFD for bytes that are no UTF-8, of which a document must be: file names may
+/// have such.
+std::string asUtf8(std::string_view bytes);
+
 /// The candidate with the smallest edit distance (with transpositions) to `name`, if it is close
 /// enough to be a likely slip.
 std::optional<std::string> nearestName(std::string_view name,

@@ -9,15 +9,16 @@
 namespace etendue {
 namespace {
 
+/// Zero beyond the end.
+unsigned byteAt(std::string_view bytes, std::size_t at) {
+    return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0u;
+}
+
 struct Text {
     std::string_view bytes;
     const ConfigSource& source;
 
-    /// Zero beyond the end.
-    unsigned byte(std::size_t at) const {
-        return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0u;
-    }
-    bool isAscii(std::size_t at) const { return byte(at) < 0x80; }
+    bool isAscii(std::size_t at) const { return byteAt(bytes, at) < 0x80; }
     [[noreturn]] void fail(std::size_t at, const std::string& message) const {
         throw InputError(whereInText(source, bytes, at) + ": " + message);
     }
@@ -25,12 +26,12 @@ struct Text {
 
 /// Bytes of the well-formed UTF-8 sequence at `at`, 0 if there is none. The Unicode Standard,
 /// table 3-7.
-std::size_t utf8Length(const Text& text, std::size_t at) {
+std::size_t utf8Length(std::string_view bytes, std::size_t at) {
     const auto isBetween = [](unsigned value, unsigned low, unsigned high) {
         return low <= value && value <= high;
     };
-    if (text.isAscii(at)) return 1;
-    const unsigned first = text.byte(at);
+    const unsigned first = byteAt(bytes, at);
+    if (first < 0x80) return 1;
     const std::size_t length = isBetween(first, 0xC2, 0xDF)   ? 2
                                : isBetween(first, 0xE0, 0xEF) ? 3
                                : isBetween(first, 0xF0, 0xF4) ? 4
@@ -38,15 +39,15 @@ std::size_t utf8Length(const Text& text, std::size_t at) {
     // The second byte excludes overlong forms, surrogates and what lies beyond U+10FFFF.
     const unsigned secondLow = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
     const unsigned secondHigh = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
-    if (length == 0 || !isBetween(text.byte(at + 1), secondLow, secondHigh)) return 0;
+    if (length == 0 || !isBetween(byteAt(bytes, at + 1), secondLow, secondHigh)) return 0;
     for (std::size_t i = 2; i < length; ++i)
-        if (!isBetween(text.byte(at + i), 0x80, 0xBF)) return 0;
+        if (!isBetween(byteAt(bytes, at + i), 0x80, 0xBF)) return 0;
     return length;
 }
 
 void checkUtf8(const Text& text) {
     for (std::size_t at = 0; at < text.bytes.size();) {
-        const std::size_t length = utf8Length(text, at);
+        const std::size_t length = utf8Length(text.bytes, at);
         if (length == 0) text.fail(at, "not valid UTF-8");
         at += length;
     }
@@ -137,6 +138,16 @@ void checkStructure(const Text& text) {
 }
 
 }  // namespace
+
+std::string asUtf8(std::string_view bytes) {
+    std::string text;
+    for (std::size_t at = 0; at < bytes.size();) {
+        const std::size_t length = utf8Length(bytes, at);
+        text += length > 0 ? bytes.substr(at, length) : "\uFFFD";
+        at += std::max<std::size_t>(length, 1);
+    }
+    return text;
+}
 
 std::string tooDeepMessage() {
     return "nested deeper than " + std::to_string(maxConfigDepth) + " levels";

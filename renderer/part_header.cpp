@@ -36,7 +36,7 @@ constexpr std::array planeNames{PlaneName{"splat-sums", &PartPlanes::splatSums},
                                 PlaneName{"extra-samples", &PartPlanes::extraSamples},
                                 PlaneName{"sample-luminance", &PartPlanes::sampleLuminance}};
 
-/// The metadata of a picture: texts, and numbers so many.
+/// Metadata of a picture: a text, or so many numbers.
 struct MetadataName {
     const char* name;
     std::size_t numbers;  // none: a text
@@ -45,10 +45,10 @@ constexpr std::array metadataNames{
     MetadataName{"etendue:scene", 0}, MetadataName{"etendue:estimator", 0},
     MetadataName{"worldToCamera", 16}, MetadataName{"aperture", 1}, MetadataName{"focus", 1}};
 
-/// A TOML string.
+/// A TOML string. What is no UTF-8 is replaced: a part that cannot be read helps nobody.
 std::string tomlString(std::string_view text) {
     std::string result = "\"";
-    for (const char c : text) {
+    for (const char c : asUtf8(text)) {
         if (c == '"' || c == '\\')
             result += {'\\', c};
         else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
@@ -87,7 +87,7 @@ std::string textOf(const MetadataValue& value) {
 }
 
 Metadata parsePicture(const ConfigTable& table) {
-    const Range any{-Range::infinity, Range::infinity};  // focus may lie there
+    const Range any{-Range::infinity, Range::infinity};  // focus may be at infinity
     Metadata picture;
     for (const auto& [name, count] : metadataNames) {
         if (!table.has(name)) continue;

@@ -8,6 +8,7 @@
 #include "renderer/part_file.h"
 #include "tools/progress.h"
 #include "tools/version.h"
+#include "tools/write_file.h"
 
 namespace etendue {
 
@@ -53,11 +54,11 @@ Metadata metadataFor(const MergeCommand& command, const Merged& merged) {
 void writeMerged(const MergeCommand& command, const Merged& merged) {
     const Metadata metadata = metadataFor(command, merged);
     const std::vector<ExrChannels> channels = merged.film.channels();
-    writePreview(command.preview, merged.film.window(), channels.front().pixels);
     if (isPartFile(command.output))
         writePart(command.output, merged.info, merged.film, metadata);
     else
         writeExr(command.output, merged.film.window(), channels, metadata);
+    writePreview(command.preview, merged.film.window(), channels.front().pixels);
 }
 
 /// What the picture is, compared with that of one render of all its samples.
@@ -74,6 +75,8 @@ std::string exactnessText(const Merged& merged) {
 }  // namespace
 
 ExitCode runMerge(const MergeCommand& command) {
+    checkWritable(command.output, ".exr");
+    checkWritable(command.preview.file, ".png");
     const OutputLock lock(command.output);
     const Merged merged = mergeAll(command.parts);
     writeMerged(command, merged);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "lens/fit_cache.h"
 #include "renderer/atomic_file.h"
@@ -18,6 +17,7 @@
 #include "tools/scene_names.h"
 #include "tools/stop_request.h"
 #include "tools/version.h"
+#include "tools/write_file.h"
 
 namespace etendue {
 
@@ -146,29 +146,6 @@ void writePictures(const RenderCommand& command, const LoadedScene& loaded, cons
         writeExr(command.techniqueImages, film.window(),
                  techniques.channels(film.samples(), film.state().lightPaths), metadata);
     writePreview(command.preview, film.window(), channels.front().pixels);
-}
-
-/// A picture's format does not follow its name; a name that promises another one would mislead.
-void checkExtension(const std::filesystem::path& file, const std::string& expected) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (!extension.empty() && extension != expected)
-        throw InputError(
-            fmt::format("{}: this picture is written as {}", file.string(), expected.substr(1)),
-            ExitCode::usage);
-}
-
-/// Better now than after hours of rendering.
-void checkWritable(const std::filesystem::path& file, const std::string& extension) {
-    if (file.empty()) return;
-    checkExtension(file, extension);
-    std::filesystem::path folder = file.parent_path();
-    if (folder.empty()) folder = ".";
-    std::error_code error;
-    if (!std::filesystem::is_directory(folder, error))
-        throw InputError(fmt::format("{}: no such folder", folder.string()), ExitCode::missingFile);
-    if (std::filesystem::is_directory(file, error))
-        throw InputError(fmt::format("{}: is a folder, not a file to write", file.string()));
 }
 
 /// None of a picture that goes into a pipe or a device.

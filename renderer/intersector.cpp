@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <bit>
+#include <cerrno>
 #include <cstddef>
 #include <cstring>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 
 #include "renderer/lanes.h"
 #include "renderer/material.h"
+#include "renderer/parallel.h"
 
 namespace etendue {
 
@@ -95,6 +97,7 @@ struct Intersector::Embree {
         const std::string reason = error == RTC_ERROR_OUT_OF_MEMORY     ? "out of memory"
                                    : error == RTC_ERROR_UNSUPPORTED_CPU ? "processor not supported"
                                    : lastError.empty()                  ? "internal error"
+                                   : lastError == std::strerror(EAGAIN) ? noThreadMessage
                                                                         : lastError;
         throw std::runtime_error("Embree: " + reason + " while " + doing);
     }

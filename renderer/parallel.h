@@ -6,6 +6,10 @@
 
 namespace etendue {
 
+/// What a user is told where the system, as it says, has a resource temporarily unavailable.
+inline constexpr const char* noThreadMessage =
+    "no thread can be started: too little memory, or too few threads allowed";
+
 /// How many threads to use when nobody says.
 int hardwareThreads();
 

@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "renderer/estimator.h"
+#include "renderer/parallel.h"
 #include "tools/bench_options.h"
 #include "tools/compare_command.h"
 #include "tools/farm_command.h"
@@ -214,11 +215,9 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         say("etendue: out of memory\n");
     } catch (const std::exception& error) {
-        // What the system says where a thread finds no place.
-        const bool lacksThreads =
-            std::string_view(error.what()).find(std::strerror(EAGAIN)) != std::string_view::npos;
-        say(fmt::format("etendue: {}{}\n", error.what(),
-                        lacksThreads ? ": too little memory, or too few threads allowed" : ""));
+        // TBB has but the system's words where it cannot start a thread.
+        const bool lacksThreads = std::string_view(error.what()) == std::strerror(EAGAIN);
+        say(fmt::format("etendue: {}\n", lacksThreads ? etendue::noThreadMessage : error.what()));
     }
     return static_cast<int>(ExitCode::failure);
 }

@@ -219,7 +219,7 @@ constexpr double roundings = 100.0;
 }  // namespace
 
 TEST_CASE("Generated C++: it compiles without a warning and answers as the model does" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     for (const GeneratedLens& lens : {axialLens(FitForm::twoPoint), anamorphicLens(), fisheye()}) {
         const TemporaryFolder folder;
         folder.write("lens.h",
@@ -244,7 +244,7 @@ TEST_CASE("Generated C++: the sensor-state form solves for the slope as the mode
 }
 
 TEST_CASE("Generated GLSL: valid in ES 3.00 and 4.50, and answers as the model does" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     for (const GeneratedLens& lens : {axialLens(FitForm::twoPoint), axialLens(FitForm::sensorState),
                                       anamorphicLens(), fisheye()}) {
         const TemporaryFolder folder;

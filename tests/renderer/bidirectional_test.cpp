@@ -98,7 +98,7 @@ void checkAgreement(const std::string& scene, const std::vector<std::string>& es
 }  // namespace
 
 TEST_CASE("Estimators: pt, lt and bdpt agree on matte surfaces under an area light" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     for (const std::string& camera : {pinhole, thinLens})
         checkAgreement(sceneWith(camera, room(matte) + areaLamp), {"lt", "bdpt"}, 64, 0.05);
 }

@@ -248,7 +248,7 @@ TEST_CASE("Path tracer: in an open white furnace every lossless material is invi
 }
 
 TEST_CASE("Path tracer: in a closed white furnace every lossless material is invisible" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     checkFurnaces(closedBox, 400, 0.08);
 }
 

@@ -89,7 +89,7 @@ TEST_CASE("Bench agreement: time reckoned by a table gives the same samples in e
 }
 
 TEST_CASE("Bench agreement: names that do not exist are told with the nearest that does" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const Scenes scenes;
     const Outcome scene = run(scenes.arguments() + " bux");
     CHECK(scene.code == 66);

@@ -28,7 +28,7 @@ TEST_CASE("Command: --help teaches, --version names, no command is wrong usage")
 }
 
 TEST_CASE("Command: an option that makes no sense is wrong usage, in one clear line" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", smallScene).string();
     const std::string out = (folder.path() / "o.exr").string();

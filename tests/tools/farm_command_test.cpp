@@ -56,7 +56,7 @@ auto linesOf(const std::string& text) { return std::count(text.begin(), text.end
 }  // namespace
 
 TEST_CASE("Farm: what is listed renders the picture of one render, and then nothing is missing" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const Farm farm;
     const Outcome all = farm.run("list");
     CHECK(all.code == 0);
@@ -79,7 +79,7 @@ TEST_CASE("Farm: what is listed renders the picture of one render, and then noth
 }
 
 TEST_CASE("Farm: tasks that are missing, damaged or incomplete are told, and the others left out" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const Farm farm;
     REQUIRE(farm.run("list").code == 0);
     REQUIRE(farm.renderAll() == 0);
@@ -102,7 +102,7 @@ TEST_CASE("Farm: tasks that are missing, damaged or incomplete are told, and the
 }
 
 TEST_CASE("Farm: a folder of another picture is refused, with the setting that differs" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const Farm farm;
     REQUIRE(farm.run("list").code == 0);
     const auto camera = farm.folder.write("camera.toml", "[camera]\nfov = 30\n").string();
@@ -128,7 +128,7 @@ TEST_CASE("Farm: a folder of another picture is refused, with the setting that d
 }
 
 TEST_CASE("Farm: bad input is an error before anything is written or queued" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const Farm farm;
     CHECK(farm.run("slurm", "--submit -s camera.fow=3").code == 65);
     CHECK(etendue::run("farm list no.toml -o x --samples 8 --task-samples 2").code == 66);

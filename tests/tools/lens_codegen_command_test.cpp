@@ -4,7 +4,7 @@
 using namespace etendue;
 
 TEST_CASE("Lens command: codegen writes a lens for other programs, to a file or to the terminal" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const TemporaryFolder folder;
     const std::string cache = "XDG_CACHE_HOME=" + folder.path().string();
     const std::string fit = "lens codegen double-gauss-100mm --terms 8 --degree 4 ";

@@ -47,7 +47,7 @@ TEST_CASE(
 }
 
 TEST_CASE("Lens command: a setting that is no number, or beyond all lenses, is wrong usage" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const std::vector<std::pair<const char*, const char*>> cases{
         {"--sensor nan,nan", "expected a number from 0.001 to 100000"},
         {"--sensor 1e9,1", "expected a number from 0.001 to 100000"},
@@ -91,7 +91,7 @@ TEST_CASE("Lens command: draw writes a whole picture with every field") {
 }
 
 TEST_CASE("Lens command: fit reports its errors, and the second run takes it from the cache" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const TemporaryFolder folder;
     const std::string setting = "XDG_CACHE_HOME=" + folder.path().string();
     const std::string arguments = "lens fit tessar-100mm --terms 8 --degree 5";
@@ -129,7 +129,7 @@ TEST_CASE("Lens command: what is written goes through a link and never replaces 
 }
 
 TEST_CASE("Lens command: a fit is written through links and into pipes, which stay what they are" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const TemporaryFolder folder;
     folder.write("target.json", "old");
     std::filesystem::create_symlink("target.json", folder.path() / "link.json");

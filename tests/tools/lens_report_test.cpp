@@ -95,7 +95,7 @@ TEST_CASE(
 }
 
 TEST_CASE("Lens report: an anamorphic lens is looked at in both of its planes" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const OwnCache cache;
     LensReportCommand command = quickReport("anamorphic-80x90mm");
     command.options.degree = 5;

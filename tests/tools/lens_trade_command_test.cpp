@@ -13,7 +13,7 @@ TEST_CASE("Text table: columns are as wide as their widest cell, words to the le
 }
 
 TEST_CASE("Lens command: trade prints a row for every fit, and writes them as CSV and as a plot" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const TemporaryFolder folder;
     const std::string csv = (folder / "trade.csv").string(), svg = (folder / "trade.svg").string();
     const Outcome outcome =
@@ -34,7 +34,7 @@ TEST_CASE("Lens command: trade prints a row for every fit, and writes them as CS
 }
 
 TEST_CASE("Lens command: a fit and a trade of a zoom lens say at which position" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const TemporaryFolder folder;
     const std::string cache = "XDG_CACHE_HOME=" + folder.path().string();
     const std::string at = "zoom-57-143mm --zoom '143 mm' --terms 4 --degree 3 ";
@@ -66,7 +66,7 @@ TEST_CASE("Lens command: trade without a lens, or with a basis that does not sui
 }
 
 TEST_CASE("Lens command: trade's published table has no lenses, settings or files of the user's" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     for (const std::string other :
          {"tessar-100mm", "--zoom x", "--sensor 36,24", "--focus 2", "--f-number 8", "--terms 8",
           "--degree 5", "--basis axial", "--form two-point", "--csv t.csv", "--plot t.svg"}) {

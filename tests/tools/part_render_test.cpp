@@ -17,7 +17,7 @@ using namespace etendue;
 namespace fs = std::filesystem;
 
 TEST_CASE("Part: ranges add up to the render of all, bit for bit, in any order" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const Renders renders;
     for (const std::string kind : {"pt", "lt", "bdpt"}) {
         CAPTURE(kind);
@@ -42,7 +42,7 @@ TEST_CASE("Part: ranges add up to the render of all, bit for bit, in any order" 
 }
 
 TEST_CASE("Part: a render goes on from its part to the bits of one that did not stop" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const Renders renders;
     for (const std::string kind : {"pt", "bdpt"}) {
         CAPTURE(kind);
@@ -60,7 +60,7 @@ TEST_CASE("Part: a render goes on from its part to the bits of one that did not 
 }
 
 TEST_CASE("Part: what does not belong together is refused, and the difference named" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const Renders renders;
     REQUIRE(renders.render("a.part.exr", "--range 0:2").code == 0);
     const auto refusal = [&](const std::string& options) {
@@ -153,18 +153,20 @@ TEST_CASE("Part: a second process on the same output is refused") {
 }
 
 TEST_CASE("Part: SIGUSR1 writes it while the render goes on; --error ends one" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const Renders renders;
     const std::string scene = renders.path("s.toml").string();
     const std::string x = renders.path("x.exr").string();
     const std::string part = renders.path("x.part.exr").string();
-    // It listens before it reports progress. What a busy machine takes for that nobody knows.
-    const std::string log = renders.path("log").string();
-    const std::string line = "render " + scene + " -o " + x +
-                             " --samples 1000000 --progress json 2> " + log +
-                             " & pid=$!; while ! [ -s " + log +
-                             " ]; do sleep 0.02; done; kill -USR1 $pid; while ! [ -e " + part +
-                             " ]; do sleep 0.02; done; kill -INT $pid; wait $pid; echo code $?";
+    // Asked while the scene is being loaded, as soon as the output is locked; a checkpoint of its
+    // own it would write in days.
+    const auto waitFor = [](const std::string& condition) {
+        return "until [ " + condition + " ]; do kill -0 $pid || exit 3; sleep 0.02; done; ";
+    };
+    const std::string line =
+        "render " + scene + " -o " + x + " --quiet --samples 1000000 --checkpoint 1e6 & pid=$!; " +
+        waitFor("-s " + renders.path(".x.exr.lock").string()) + "kill -USR1 $pid; " +
+        waitFor("-e " + part) + "kill -INT $pid; wait $pid; echo code $?";
     const Outcome outcome = run(line);
     CAPTURE(outcome.output);
     CHECK(contains(outcome.output, "code 75"));

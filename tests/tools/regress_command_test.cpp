@@ -66,7 +66,7 @@ std::string withNoiseTimes(std::string text, double factor) {
 }  // namespace
 
 TEST_CASE("Bench regress: a baseline is made, kept to, and found to be left" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const Regression& r = regression();
     std::filesystem::remove(r.folder / "data/baseline.toml");
     const Outcome none = r.regress("");

@@ -43,7 +43,7 @@ Vec3 renderedSum(const std::filesystem::path& scene, const std::vector<std::stri
 }  // namespace
 
 TEST_CASE("Replay: the sum that it prints is what the render adds to the pixel, to the bit" *
-          doctest::test_suite("statistical")) {
+          doctest::test_suite("slow")) {
     const TemporaryFolder folder;
     const std::filesystem::path scene = folder.write("s.toml", everyMaterialScene);
     for (const std::string kind : {"pt", "bdpt"})

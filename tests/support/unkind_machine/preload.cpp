@@ -1,6 +1,9 @@
 // A machine that fails at a chosen moment: tests load it in front of the C library (LD_PRELOAD).
-//   UNKIND_KILL=n     the nth call that changes a file kills the process; a write is half done then
+//   UNKIND_KILL=n     the nth write, fsync, link, unlink or rename kills the process; a write is
+//   half
+//                     done then
 //   UNKIND_CLOCK=1    the time of day jumps by a year at every look, back and forth
+#include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
@@ -51,6 +54,13 @@ int link(const char* from, const char* to) noexcept {
 int unlink(const char* file) noexcept {
     if (isLastCall()) die();
     return static_cast<int>(syscall(SYS_unlinkat, AT_FDCWD, file, 0));
+}
+
+int remove(const char* path) noexcept {
+    const int result = unlink(path);
+    return result != 0 && errno == EISDIR
+               ? static_cast<int>(syscall(SYS_unlinkat, AT_FDCWD, path, AT_REMOVEDIR))
+               : result;
 }
 
 int rename(const char* from, const char* to) noexcept {

@@ -3,7 +3,6 @@
 #include <embree3/rtcore.h>
 
 #include <bit>
-#include <cerrno>
 #include <cstddef>
 #include <cstring>
 #include <stdexcept>
@@ -97,8 +96,7 @@ struct Intersector::Embree {
         const std::string reason = error == RTC_ERROR_OUT_OF_MEMORY     ? "out of memory"
                                    : error == RTC_ERROR_UNSUPPORTED_CPU ? "processor not supported"
                                    : lastError.empty()                  ? "internal error"
-                                   : lastError == std::strerror(EAGAIN) ? noThreadMessage
-                                                                        : lastError;
+                                                                        : inPlainWords(lastError);
         throw std::runtime_error("Embree: " + reason + " while " + doing);
     }
 

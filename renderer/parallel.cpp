@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
+#include <cstring>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -17,6 +19,11 @@
 #endif
 
 namespace etendue {
+
+std::string inPlainWords(const std::string& error) {
+    if (error != std::strerror(EAGAIN)) return error;
+    return "no thread can be started: too little memory, or too few threads allowed";
+}
 
 int hardwareThreads() {
     return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

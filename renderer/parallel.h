@@ -3,12 +3,13 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 
 namespace etendue {
 
-/// What a user is told where the system, as it says, has a resource temporarily unavailable.
-inline constexpr const char* noThreadMessage =
-    "no thread can be started: too little memory, or too few threads allowed";
+/// The words of an error; where they are but the system's of a thread that cannot be started, which
+/// TBB and Embree pass on, words that say so.
+std::string inPlainWords(const std::string& error);
 
 /// How many threads to use when nobody says.
 int hardwareThreads();

@@ -2,16 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <functional>
 #include <map>
 #include <optional>
 #include <stdexcept>
-#include <string_view>
 
 #include "renderer/estimator.h"
 #include "renderer/parallel.h"
@@ -215,9 +212,7 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         say("etendue: out of memory\n");
     } catch (const std::exception& error) {
-        // TBB has but the system's words where it cannot start a thread.
-        const bool lacksThreads = std::string_view(error.what()) == std::strerror(EAGAIN);
-        say(fmt::format("etendue: {}\n", lacksThreads ? etendue::noThreadMessage : error.what()));
+        say(fmt::format("etendue: {}\n", etendue::inPlainWords(error.what())));
     }
     return static_cast<int>(ExitCode::failure);
 }

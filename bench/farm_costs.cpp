@@ -14,6 +14,7 @@
 
 #include "bench/bench_scene.h"
 #include "renderer/part_file.h"
+#include "statistics/statistics.h"
 #include "tools/part_keeper.h"
 
 namespace etendue {
@@ -98,11 +99,7 @@ std::vector<double> measureTasks(const FarmScene& scene, const fs::path& part, F
     }
     costs.sampleSeconds = median(samples);
     costs.partBytes = static_cast<double>(fs::file_size(part));
-    double mean = 0.0, variance = 0.0;
-    for (const double x : logs) mean += x / static_cast<double>(logs.size());
-    for (const double x : logs)
-        variance += (x - mean) * (x - mean) / static_cast<double>(logs.size() - 1);
-    costs.spread = std::sqrt(variance);
+    costs.spread = std::sqrt(summarize(logs).variance);
     return besides;
 }
 

@@ -18,6 +18,7 @@
 #include "renderer/film.h"
 #include "renderer/part_file.h"
 #include "tests/tools/renders.h"
+#include "tools/farm_scripts.h"
 #include "tools/part_keeper.h"
 
 using namespace etendue;
@@ -78,6 +79,25 @@ private:
     std::uint32_t held_ = 0;
 };
 
+/// Renders that `kill`, told which kill it is, runs until their end: with 1, 2 and 4 threads.
+template <class Kill>
+void killAgainAndAgain(const Renders& renders, const std::string& when, const Kill& kill) {
+    int kills = 0;
+    for (const int threads : {1, 2, 4}) {
+        CAPTURE(threads);
+        KilledRender render(renders, threads);
+        for (int i = 1; i <= 34; ++i) {
+            CAPTURE(i);
+            kills += kill(render, i).code == killed;
+            render.checkParts();
+        }
+        CHECK(render.held() > 0);
+        render.checkEnd();
+    }
+    CHECK(kills == 102);
+    MESSAGE(kills << " kills " << when);
+}
+
 /// Of this process, in bytes.
 std::size_t residentBytes() {
     std::ifstream statm("/proc/self/statm");
@@ -118,42 +138,19 @@ TEST_CASE("Unkind machine: killed at any time, a render goes on to the same bits
     fs::remove(renders.path("x.exr"));
     std::mt19937 random(5);
     std::uniform_real_distribution<double> share(0.5, 2.5);
-    int kills = 0;
-    for (const int threads : {1, 2, 4}) {
-        CAPTURE(threads);
-        KilledRender render(renders, threads);
-        for (int i = 0; i < 34; ++i) {
-            const double seconds = share(random) * startSeconds.count();
-            const Outcome outcome = shell("timeout -s KILL " + std::to_string(seconds) + " " +
-                                          ETENDUE_COMMAND + " " + render.line());
-            kills += outcome.code == killed;
-            const std::uint32_t held = render.held();
-            render.checkParts();
-            if (render.held() == held) startSeconds *= 1.05;  // the machine has become slower
-        }
-        CHECK(render.held() > 0);
-        render.checkEnd();
-    }
-    CHECK(kills == 102);
-    MESSAGE(kills << " kills at random times");
+    std::uint32_t held = 0;
+    killAgainAndAgain(renders, "at random times", [&](const KilledRender& render, int) {
+        if (render.held() == held) startSeconds *= 1.05;  // the machine has become slower
+        held = render.held();
+        return shell("timeout -s KILL " + std::to_string(share(random) * startSeconds.count()) +
+                     " " + ETENDUE_COMMAND + " " + render.line());
+    });
 }
 
 TEST_CASE("Unkind machine: killed in the middle of writing a part, it has the old one or the new") {
-    const Renders renders;
-    int kills = 0;
-    for (const int threads : {1, 2, 4}) {
-        CAPTURE(threads);
-        KilledRender render(renders, threads);
-        for (int call = 1; call <= 34; ++call) {
-            CAPTURE(call);
-            kills += killAtCall(call, render.line()).code == killed;
-            render.checkParts();
-        }
-        CHECK(render.held() > 0);
-        render.checkEnd();
-    }
-    CHECK(kills == 102);
-    MESSAGE(kills << " kills inside the write of a part");
+    killAgainAndAgain(
+        Renders(), "inside the write of a part",
+        [](const KilledRender& render, int call) { return killAtCall(call, render.line()); });
 }
 
 TEST_CASE("Unkind machine: killed while a render ends, there is the old picture or the new one") {
@@ -339,11 +336,7 @@ TEST_CASE("Unkind machine: names with spaces, quotes and letters of all kinds") 
     const std::string folder = renders.path(name).string();
     fs::create_directories(folder);
     fs::copy(renders.path("s.toml"), renders.path(name) / "sc\xe8ne.toml");
-    const auto quoted = [&](const std::string& file) {
-        std::string word = "'";
-        for (const char c : folder + "/" + file) word += c == '\'' ? "'\\''" : std::string(1, c);
-        return word + "'";
-    };
+    const auto quoted = [&](const std::string& file) { return shellQuoted(folder + "/" + file); };
     const std::string begin = "render " + quoted("sc\xe8ne.toml") + " --quiet --size 40,24 -o ";
     REQUIRE(run(begin + quoted("a b.exr") + " --samples 2 --keep-part").code == 0);
     REQUIRE(run(begin + quoted("a b.exr") + " --samples 3 --resume --keep-part").code == 0);

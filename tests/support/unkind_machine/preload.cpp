@@ -1,7 +1,6 @@
 // A machine that fails at a chosen moment: tests load it in front of the C library (LD_PRELOAD).
-//   UNKIND_KILL=n     the nth write, fsync, link, unlink or rename kills the process; a write is
-//   half
-//                     done then
+//   UNKIND_KILL=n     the nth write, fsync, link, unlink or rename kills the process, and a write
+//                     has half of its bytes done then
 //   UNKIND_CLOCK=1    the time of day jumps by a year at every look, back and forth
 #include <errno.h>
 #include <fcntl.h>

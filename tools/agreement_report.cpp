@@ -54,7 +54,7 @@ void appendDefects(const AgreementRow& row, const AgreementSide& side, std::stri
     if (bad.count > 0)
         text += fmt::format(
             "  {}: {} samples of {} were not finite or negative; the first: --pixel {},{} --sample "
-            "{} --seed {} -s estimator.kind={} of etendue replay\n",
+            "{} --seed {} --estimator {} of etendue replay\n",
             titleOf(row), bad.count, side.estimator, bad.first.x, bad.first.y, bad.first.sample,
             bad.seed, side.estimator);
     if (bad.refusedRays > 0)

@@ -36,7 +36,8 @@ Examples:
   etendue merge a.part.exr b.part.exr -o picture.exr
   etendue farm slurm scene.toml --samples 4096 --task-samples 64 -o out/farm --submit
   etendue check scene.toml
-  etendue replay scene.toml --pixel 360,240 --sample 0 -s estimator.kind=bdpt
+  etendue render scene.toml -o a.exr --estimator bdpt --camera scenes/cameras/fisheye.toml
+  etendue replay scene.toml --pixel 360,240 --sample 0 --estimator bdpt
   etendue compare out/picture.exr out/reference.exr --error-image out/error.png
   etendue bench agreement cornell-box --cameras pinhole,double-gauss
   etendue lens info double-gauss-100mm
@@ -134,10 +135,7 @@ void addCheck(CLI::App& app, CheckCommand& c) {
         app.add_subcommand("check", "Load a scene, report what is in it, render nothing");
     check->add_option("scene", c.scene, "Scene file or bare model")->required()->type_name("FILE");
     addCamera(check, c.camera);
-    check
-        ->add_option("-s,--set", c.overrides,
-                     "KEY=VALUE overrides any key of the scene (repeatable)")
-        ->allow_extra_args(false);
+    addOverrides(check, c.overrides);
 }
 
 void addReplay(CLI::App& app, ReplayCommand& c) {

@@ -161,9 +161,7 @@ void checkCombinations(const RenderCommand& command, const std::string& kind) {
     const auto refuse = [](const char* message) { throw InputError(message, ExitCode::usage); };
     if (command.techniqueImages.empty()) return;
     if (kind == "pt")
-        refuse(
-            "--technique-images: the estimator is \"pt\", which has none; -s estimator.kind=bdpt "
-            "has");
+        refuse("--technique-images: the estimator is \"pt\", which has none; --estimator bdpt has");
     if (command.resumes)
         refuse(
             "--technique-images: a part file has no such images to go on from, as --resume asks");

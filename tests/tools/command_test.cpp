@@ -137,6 +137,20 @@ TEST_CASE("Command: crop, size and overrides reach the picture") {
     CHECK(contains(outcome.output, "max_depth"));
 }
 
+TEST_CASE("Command: --estimator overrides the scene's, beside other overrides") {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("s.toml", smallScene).string();
+    const std::string overrides = " --estimator lt -s film.width=20 -s film.height=10";
+    const Outcome outcome = run("check " + scene + overrides);
+    CHECK(outcome.code == 0);
+    CHECK(contains(outcome.output, "20 × 10"));
+    CHECK(contains(outcome.output, " lt"));
+    const Outcome unknown = run("check " + scene + " --estimator bpt");
+    CHECK(unknown.code == 65);
+    CHECK(contains(unknown.output, "estimator.kind"));
+    CHECK(contains(unknown.output, "\"bdpt\""));
+}
+
 TEST_CASE("Command: check reports what is in a scene and renders nothing") {
     const TemporaryFolder folder;
     const Outcome outcome = run("check " + folder.write("s.toml", smallScene).string());

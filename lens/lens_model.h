@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <span>
 
 namespace etendue {
 
@@ -58,6 +59,14 @@ public:
         const std::optional<ExitRay> ray = trace(*sensor, aperture, wavelengthNm);
         if (!ray) return {};
         return Sighting{*sensor, *ray};
+    }
+    /// see() at each of `wavelengthsNm`, into as many `sightings`. A lens that searches may begin
+    /// at one wavelength where it has ended at the one before.
+    virtual void seeEach(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                         std::span<const double> wavelengthsNm,
+                         std::span<std::optional<Sighting>> sightings) const {
+        for (std::size_t i = 0; i < wavelengthsNm.size(); ++i)
+            sightings[i] = see(targetMm, aperture, wavelengthsNm[i]);
     }
 
     /// Uniform over the aperture's area. `u` in [0, 1)².

@@ -61,10 +61,9 @@ Connection PolynomialLens::solve(const Eigen::Vector3d& targetMm, AperturePoint 
                                            : solveByTwoSteps(targetMm, aperture, wavelengthNm);
 }
 
-std::optional<Eigen::Vector2d> PolynomialLens::firstGuess(const Eigen::Vector3d& target,
+std::optional<Eigen::Vector2d> PolynomialLens::firstGuess(const TargetSight& sight,
                                                           AperturePoint aperture,
                                                           double wavelengthNm) const {
-    const TargetSight sight = pupil_.sight(target, aperture);
     const bool isTrusted = sight.nearness <= connectStart_.trustedNearness;
     if (isTrusted && !(sight.field.norm() <= connectStart_.widestField + sight.nearness)) return {};
     const Eigen::Vector2d guess =
@@ -80,23 +79,42 @@ std::optional<Eigen::Vector2d> PolynomialLens::firstGuess(const Eigen::Vector3d&
 
 Connection PolynomialLens::solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture,
                                          double wavelengthNm) const {
+    const auto guess = firstGuess(pupil_.sight(target, aperture), aperture, wavelengthNm);
+    if (!guess) return {ConnectStatus::outOfField, {}, 0};
     Connection connection;
     const std::optional<Aimed> end =
-        aim(target, aperture, wavelengthNm, fineToleranceRadians, connection);
+        aim(target, aperture, wavelengthNm, *guess, fineToleranceRadians, connection);
     if (connection.status == ConnectStatus::found) connection.sensor = SensorPoint{end->sensor};
     return connection;
 }
 
 std::optional<Sighting> PolynomialLens::see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                             double wavelengthNm) const {
-    if (!canSee(targetMm, aperture, wavelengthNm)) return {};
-    Connection connection;
-    // Where the first guess is as near, as in most of a lens stopped down, one evaluation does.
+    std::optional<Sighting> sighting;
+    seeEach(targetMm, aperture, {&wavelengthNm, 1}, {&sighting, 1});
+    return sighting;
+}
+
+void PolynomialLens::seeEach(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                             std::span<const double> wavelengthsNm,
+                             std::span<std::optional<Sighting>> sightings) const {
+    // Where a guess is as near, as the first mostly is in a lens stopped down, one evaluation does.
     constexpr double toleranceRadians = 2e-5;
-    const std::optional<Aimed> end =
-        aim(targetMm, aperture, wavelengthNm, toleranceRadians, connection);
-    if (connection.status != ConnectStatus::found) return {};
-    return Sighting{{end->sensor}, end->ray};
+    const TargetSight sight = pupil_.sight(targetMm, aperture);
+    Eigen::Vector2d missedBy(0.0, 0.0);  // the first guess at the wavelength before
+    for (std::size_t i = 0; i < wavelengthsNm.size(); ++i) {
+        sightings[i].reset();
+        if (!canSee(targetMm, aperture, wavelengthsNm[i])) continue;
+        const auto guess = firstGuess(sight, aperture, wavelengthsNm[i]);
+        if (!guess) continue;
+        Connection connection;
+        const std::optional<Aimed> end = aim(targetMm, aperture, wavelengthsNm[i],
+                                             *guess + missedBy, toleranceRadians, connection);
+        if (!end) continue;
+        missedBy = end->sensor - *guess;
+        if (connection.status == ConnectStatus::found)
+            sightings[i] = Sighting{{end->sensor}, end->ray};
+    }
 }
 
 bool PolynomialLens::canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture,
@@ -106,13 +124,8 @@ bool PolynomialLens::canSee(const Eigen::Vector3d& targetMm, AperturePoint apert
 }
 
 std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, AperturePoint aperture,
-                                         double wavelengthNm, double toleranceRadians,
-                                         Connection& connection) const {
-    const std::optional<Eigen::Vector2d> guess = firstGuess(target, aperture, wavelengthNm);
-    if (!guess) {
-        connection.status = ConnectStatus::outOfField;
-        return {};
-    }
+                                         double wavelengthNm, const Eigen::Vector2d& guess,
+                                         double toleranceRadians, Connection& connection) const {
     const auto exit = [&](const Eigen::Vector2d& s,
                           double apertureShare) -> std::optional<ExitRay> {
         // A little beyond the domain, for searches to overshoot; far beyond it powers overflow.
@@ -121,7 +134,7 @@ std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, Aperture
         return map_.exitRay({s}, {apertureShare * aperture.mm}, wavelengthNm);
     };
     TargetSolver solver(exit, focalLengthMm_, toleranceRadians);
-    std::optional<Aimed> end = solver.newton(target, *guess);
+    std::optional<Aimed> end = solver.newton(target, guess);
     if (!end) end = solver.follow(target);
     connection.iterations = solver.steps();
     connection.status =

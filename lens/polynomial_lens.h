@@ -29,6 +29,11 @@ public:
     /// that leaves within 2e-5 rad of it, a tenth of what fits err by.
     std::optional<Sighting> see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                 double wavelengthNm) const override;
+    /// What a first guess misses by hardly changes with the wavelength: from the second on, one
+    /// evaluation mostly does.
+    void seeEach(const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                 std::span<const double> wavelengthsNm,
+                 std::span<std::optional<Sighting>> sightings) const override;
     AperturePoint sampleAperture(Eigen::Vector2d u) const override;
     double apertureAreaMm2() const override { return aperture_.areaMm2(); }
 
@@ -39,15 +44,16 @@ public:
     const FitDomain& domain() const { return domain_; }
 
 private:
-    std::optional<Eigen::Vector2d> firstGuess(const Eigen::Vector3d& target, AperturePoint aperture,
+    std::optional<Eigen::Vector2d> firstGuess(const TargetSight& sight, AperturePoint aperture,
                                               double wavelengthNm) const;
     ConnectStatus statusOf(SensorPoint sensor, const ExitRay& ray, AperturePoint aperture,
                            double wavelengthNm) const;
     bool canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm) const;
-    /// The end of our search, and how it went; the connection's sensor point is not set.
+    /// The end of our search from the sensor point `guess`, and how it went; the connection's own
+    /// sensor point is not set.
     std::optional<Aimed> aim(const Eigen::Vector3d& target, AperturePoint aperture,
-                             double wavelengthNm, double toleranceRadians,
-                             Connection& connection) const;
+                             double wavelengthNm, const Eigen::Vector2d& guess,
+                             double toleranceRadians, Connection& connection) const;
     Connection solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture,
                              double wavelengthNm) const;
     Connection solveByTwoSteps(const Eigen::Vector3d& target, AperturePoint aperture,

@@ -106,43 +106,78 @@ std::optional<CameraRay> Camera::sampleRay(Vec2 film, Vec2 apertureUniform,
 }
 
 std::optional<CameraConnection> Camera::connect(Vec3 scenePoint, Vec2 apertureUniform,
-                                                const Wavelengths& wavelengths, int lane) const {
-    const Vec3d target = lensFromWorld_.point(toDouble(scenePoint)) / metresPerMm;
-    const Eigen::Vector3d targetMm(target.x, target.y, target.z);
-    if (settings_.outerPupil)
-        return connectAtOuterPupil(targetMm, false, apertureUniform,
-                                   wavelengthNm(wavelengths, lane));
-    const std::optional<Seen> seen =
-        see(targetMm, apertureUniform, wavelengthNm(wavelengths, lane));
-    if (!seen) return {};
-    const CameraConnection connection{
-        .film = seen->film,
-        .ray = worldRay(seen->exit),
-        .distance = static_cast<float>((targetMm - seen->exit.origin).norm() * metresPerMm)};
-    if (!std::isfinite(connection.distance) ||
-        footprintArea(connection.ray, connection.distance) == 0.0)
-        return {};
+                                                const Wavelengths& wavelengths) const {
+    std::optional<CameraConnection> connection;
+    connectTo(targetAt(scenePoint), apertureUniform, wavelengths, {&connection, 1});
     return connection;
 }
 
+CameraConnections Camera::connectEach(Vec3 scenePoint, Vec2 apertureUniform,
+                                      const Wavelengths& wavelengths) const {
+    CameraConnections connections;
+    connectTo(targetAt(scenePoint), apertureUniform, wavelengths, connections);
+    return connections;
+}
+
 std::optional<CameraConnection> Camera::connectToInfinity(Vec3 direction, Vec2 apertureUniform,
-                                                          const Wavelengths& wavelengths,
-                                                          int lane) const {
+                                                          const Wavelengths& wavelengths) const {
+    std::optional<CameraConnection> connection;
+    connectTo(targetToward(direction), apertureUniform, wavelengths, {&connection, 1});
+    return connection;
+}
+
+CameraConnections Camera::connectEachToInfinity(Vec3 direction, Vec2 apertureUniform,
+                                                const Wavelengths& wavelengths) const {
+    CameraConnections connections;
+    connectTo(targetToward(direction), apertureUniform, wavelengths, connections);
+    return connections;
+}
+
+Camera::Target Camera::targetAt(Vec3 scenePoint) const {
+    const Vec3d target = lensFromWorld_.point(toDouble(scenePoint)) / metresPerMm;
+    return {{target.x, target.y, target.z}, false};
+}
+
+Camera::Target Camera::targetToward(Vec3 direction) const {
     // So far away that a lens's size is an angle below a float's rounding.
     constexpr double farMm = 1e12;
     const Vec3d target = lensFromWorld_.vector(toDouble(direction)) * farMm;
-    const Eigen::Vector3d targetMm(target.x, target.y, target.z);
-    if (settings_.outerPupil)
-        return connectAtOuterPupil(targetMm, true, apertureUniform,
-                                   wavelengthNm(wavelengths, lane));
-    const std::optional<Seen> seen =
-        see(targetMm, apertureUniform, wavelengthNm(wavelengths, lane));
-    if (!seen) return {};
-    const CameraConnection connection{.film = seen->film,
-                                      .ray = worldRay(seen->exit),
-                                      .distance = std::numeric_limits<float>::infinity()};
-    if (std::isinf(pdfSolidAngle(connection.ray))) return {};
-    return connection;
+    return {{target.x, target.y, target.z}, true};
+}
+
+void Camera::connectTo(const Target& target, Vec2 apertureUniform, const Wavelengths& wavelengths,
+                       std::span<std::optional<CameraConnection>> connections) const {
+    std::array<double, Spectrum::lanes> nm;
+    for (std::size_t lane = 0; lane < connections.size(); ++lane)
+        nm[lane] = wavelengthNm(wavelengths, lane);
+    if (settings_.outerPupil) {
+        for (std::size_t lane = 0; lane < connections.size(); ++lane)
+            connections[lane] = connectAtOuterPupil(target, apertureUniform, nm[lane]);
+        return;
+    }
+    // The rays that sampleRay would make, so that both directions share one weight and one
+    // footprint.
+    std::array<std::optional<Sighting>, Spectrum::lanes> sightings;
+    lens_->seeEach(target.mm, lens_->sampleAperture(toEigen(apertureUniform)),
+                   std::span(nm).first(connections.size()),
+                   std::span(sightings).first(connections.size()));
+    for (std::size_t lane = 0; lane < connections.size(); ++lane)
+        if (sightings[lane]) connections[lane] = connectionOf(*sightings[lane], target);
+}
+
+std::optional<CameraConnection> Camera::connectionOf(const Sighting& sighting,
+                                                     const Target& target) const {
+    const Vec2 film = filmPoint(sighting.sensor.mm);
+    if (!std::isfinite(film.x) || !std::isfinite(film.y)) return {};
+    const CameraRay ray = worldRay(sighting.ray);
+    if (target.isAtInfinity) {
+        if (std::isinf(pdfSolidAngle(ray))) return {};
+        return CameraConnection{film, ray, std::numeric_limits<float>::infinity()};
+    }
+    const auto distance =
+        static_cast<float>((target.mm - sighting.ray.origin).norm() * metresPerMm);
+    if (!std::isfinite(distance) || footprintArea(ray, distance) == 0.0) return {};
+    return CameraConnection{film, ray, distance};
 }
 
 Vec2 Camera::filmPoint(const Eigen::Vector2d& sensorMm) const {  // (3)
@@ -151,10 +186,10 @@ Vec2 Camera::filmPoint(const Eigen::Vector2d& sensorMm) const {  // (3)
     return {static_cast<float>(film.x()), static_cast<float>(film.y())};
 }
 
-std::optional<CameraConnection> Camera::connectAtOuterPupil(const Eigen::Vector3d& targetMm,
-                                                            bool isAtInfinity, Vec2 uniform,
+std::optional<CameraConnection> Camera::connectAtOuterPupil(const Target& target, Vec2 uniform,
                                                             double nm) const {
-    const auto arrival = settings_.outerPupil->arrive(targetMm, isAtInfinity, toEigen(uniform), nm);
+    const auto arrival =
+        settings_.outerPupil->arrive(target.mm, target.isAtInfinity, toEigen(uniform), nm);
     if (!arrival) return {};
     const Transform& world = settings_.worldFromLens;
     CameraConnection connection{};
@@ -170,26 +205,14 @@ std::optional<CameraConnection> Camera::connectAtOuterPupil(const Eigen::Vector3
     const Frame across = Frame::fromZ(ray.direction);
     ray.directionByPixel = {across.x, across.y};
     connection.distance =
-        isAtInfinity ? std::numeric_limits<float>::infinity()
-                     : static_cast<float>((targetMm - arrival->entranceMm).norm() * metresPerMm);
+        target.isAtInfinity
+            ? std::numeric_limits<float>::infinity()
+            : static_cast<float>((target.mm - arrival->entranceMm).norm() * metresPerMm);
     return connection;
 }
 
-double Camera::wavelengthNm(const Wavelengths& wavelengths, int lane) const {
-    return settings_.isDispersive ? wavelengths.nm[static_cast<std::size_t>(lane)]
-                                  : Wavelengths::rgbWavelengthNm;
-}
-
-std::optional<Camera::Seen> Camera::see(const Eigen::Vector3d& targetMm, Vec2 apertureUniform,
-                                        double nm) const {
-    const AperturePoint aperture = lens_->sampleAperture(toEigen(apertureUniform));
-    // The ray that sampleRay would make, so that both directions share one weight and one
-    // footprint.
-    const std::optional<Sighting> sighting = lens_->see(targetMm, aperture, nm);
-    if (!sighting) return {};
-    const Seen seen{filmPoint(sighting->sensor.mm), sighting->ray};
-    if (!std::isfinite(seen.film.x) || !std::isfinite(seen.film.y)) return {};
-    return seen;
+double Camera::wavelengthNm(const Wavelengths& wavelengths, std::size_t lane) const {
+    return settings_.isDispersive ? wavelengths.nm[lane] : Wavelengths::rgbWavelengthNm;
 }
 
 CameraRay Camera::worldRay(const ExitRay& exit) const {

@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "lens/lens_model.h"
 #include "renderer/spectrum.h"
@@ -33,6 +34,9 @@ struct CameraConnection {
     CameraRay ray;   // the ray that trace would have made there
     float distance;  // m, from ray.origin to the scene point
 };
+
+/// At the wavelength of each lane.
+using CameraConnections = std::array<std::optional<CameraConnection>, Spectrum::lanes>;
 
 /// Film x, to the right, is the sensor's +x and film y, down, its +y: the lens turns the picture by
 /// 180°, and so does a lens space of +y up, +z forward, whose +x is at the viewer's left.
@@ -65,33 +69,42 @@ public:
                                        const Wavelengths& wavelengths) const;
 
     /// The film point from which the ray through that same aperture point meets `scenePoint`, at
-    /// the wavelength of `lane`. Empty
-    /// when there is none, and on an image of the aperture point, where every film point would do.
+    /// the hero wavelength. Empty when there is none, and on an image of the aperture point, where
+    /// every film point would do.
     /// The importance of the connection is ray.weight · pdfArea(ray, …), exactly equation (1) after
     /// the change of variables from film to scene.
     std::optional<CameraConnection> connect(Vec3 scenePoint, Vec2 apertureUniform,
-                                            const Wavelengths& wavelengths, int lane = 0) const;
+                                            const Wavelengths& wavelengths) const;
+    /// The same at every wavelength, through one aperture point.
+    CameraConnections connectEach(Vec3 scenePoint, Vec2 apertureUniform,
+                                  const Wavelengths& wavelengths) const;
 
     /// The same for a point at infinity in the unit `direction`; the connection's distance is
     /// infinite, its importance ray.weight · pdfSolidAngle(ray).
     std::optional<CameraConnection> connectToInfinity(Vec3 direction, Vec2 apertureUniform,
-                                                      const Wavelengths& wavelengths,
-                                                      int lane = 0) const;
+                                                      const Wavelengths& wavelengths) const;
+    CameraConnections connectEachToInfinity(Vec3 direction, Vec2 apertureUniform,
+                                            const Wavelengths& wavelengths) const;
 
     const CameraSettings& settings() const { return settings_; }
     Vec3 position() const;  // of the lens origin, world
     Vec3 forward() const;
 
 private:
-    struct Seen {
-        Vec2 film;
-        ExitRay exit;
+    struct Target {
+        Eigen::Vector3d mm;  // lens space
+        bool isAtInfinity;   // and so far away there
     };
-    std::optional<Seen> see(const Eigen::Vector3d& targetMm, Vec2 apertureUniform, double nm) const;
-    double wavelengthNm(const Wavelengths& wavelengths, int lane) const;
-    std::optional<CameraConnection> connectAtOuterPupil(const Eigen::Vector3d& targetMm,
-                                                        bool isAtInfinity, Vec2 uniform,
+    Target targetAt(Vec3 scenePoint) const;
+    Target targetToward(Vec3 direction) const;
+    /// At the first wavelengths, as many as there are `connections`.
+    void connectTo(const Target& target, Vec2 apertureUniform, const Wavelengths& wavelengths,
+                   std::span<std::optional<CameraConnection>> connections) const;
+    std::optional<CameraConnection> connectionOf(const Sighting& sighting,
+                                                 const Target& target) const;
+    std::optional<CameraConnection> connectAtOuterPupil(const Target& target, Vec2 uniform,
                                                         double nm) const;
+    double wavelengthNm(const Wavelengths& wavelengths, std::size_t lane) const;
     Vec2 filmPoint(const Eigen::Vector2d& sensorMm) const;
     CameraRay worldRay(const ExitRay& exit) const;
 

@@ -23,72 +23,83 @@ public:
             if (!sample_.wants(s, 1)) continue;
             const PathVertex& y = light_.vertices[s - 1];
             if (y.kind == PathVertex::Kind::surface && !canConnect(y)) continue;
-            // Behind a dispersive lens every wavelength lands in a place of its own.
-            const int connections = isParted(view_) && !y.isHeroOnly ? Spectrum::lanes : 1;
-            for (int lane = 0; lane < connections; ++lane) {
-                if (y.kind == PathVertex::Kind::infinite)
-                    connectInfinityToLens(y, apertureUniform, lane);
-                else if (s == 1)
-                    connectEmissionToLens(y, apertureUniform, lane);
-                else
-                    connectVertexToLens(s, apertureUniform, lane);
+            const Camera& camera = view_.camera;
+            const bool isInfinite = y.kind == PathVertex::Kind::infinite;
+            if (partsColors(y)) {
+                const CameraConnections each =
+                    isInfinite
+                        ? camera.connectEachToInfinity(y.wo, apertureUniform, wavelengths_)
+                        : camera.connectEach(y.point.position, apertureUniform, wavelengths_);
+                for (std::size_t lane = 0; lane < each.size(); ++lane)
+                    if (each[lane]) add(s, static_cast<int>(lane), *each[lane]);
+            } else {
+                const auto hero =
+                    isInfinite ? camera.connectToInfinity(y.wo, apertureUniform, wavelengths_)
+                               : camera.connect(y.point.position, apertureUniform, wavelengths_);
+                if (hero) add(s, 0, *hero);
             }
         }
     }
 
 private:
+    /// Whether every wavelength lands in a place of its own: behind a dispersive lens.
+    bool partsColors(const PathVertex& y) const { return isParted(view_) && !y.isHeroOnly; }
+
+    void add(std::size_t s, int lane, const CameraConnection& connection) {
+        if (!isOnFilm(connection.film)) return;
+        if (light_.vertices[s - 1].kind == PathVertex::Kind::infinite)
+            addInfinity(lane, connection);
+        else if (s == 1)
+            addEmission(lane, connection);
+        else
+            addVertex(s, lane, connection);
+    }
+
     /// s ≥ 2, t = 1.
-    void connectVertexToLens(std::size_t s, Vec2 apertureUniform, int lane) {
+    void addVertex(std::size_t s, int lane, const CameraConnection& connection) {
         const PathVertex& y = light_.vertices[s - 1];
-        const auto connection =
-            view_.camera.connect(y.point.position, apertureUniform, wavelengths_, lane);
-        if (!connection || !isOnFilm(connection->film)) return;
-        const Vec3 toLens = -connection->ray.direction;
+        const Vec3 toLens = -connection.ray.direction;
         const Scattering scattering =
             scatteringBetween(y.point, sample_.contextAt(y, Transport::importance), y.wo, toLens);
-        if (isBlack(scattering.value) || !isLensVisible(y.point, connection->ray)) return;
+        if (isBlack(scattering.value) || !isLensVisible(y.point, connection.ray)) return;
         JoinDensities join;
-        join.lightEnd = pdfArea(connection->ray, connection->distance, y.point.geometricNormal);
+        join.lightEnd = pdfArea(connection.ray, connection.distance, y.point.geometricNormal);
         join.beforeLightEnd = lightOriginDensity(light_, s, y, scattering.pdfSolidAngleReverse);
         // `scattering` holds the cosine of the surface, so the importance is that across the ray.
         const Spectrum value = y.throughput * scattering.value *
-                               importance(connection->ray, connection->distance, toLens);
-        splat(s, lane, connection->film, value,
+                               importance(connection.ray, connection.distance, toLens);
+        splat(s, lane, connection.film, value,
               weightOf(sample_, lens(), sample_.lightVertices(s), join));
     }
 
     /// s = 1, t = 1: the light itself through the lens.
-    void connectEmissionToLens(const PathVertex& y, Vec2 apertureUniform, int lane) {
-        const auto connection =
-            view_.camera.connect(y.point.position, apertureUniform, wavelengths_, lane);
-        if (!connection || !isOnFilm(connection->film)) return;
-        const CameraRay& ray = connection->ray;
+    void addEmission(int lane, const CameraConnection& connection) {
+        const PathVertex& y = light_.vertices[0];
+        const CameraRay& ray = connection.ray;
         const Light& light = view_.scene.lights()[light_.light];
         const bool isPoint = y.kind == PathVertex::Kind::point;
         const Vec3 normal = isPoint ? ray.direction : y.point.geometricNormal;
         const Spectrum emitted = wavelengths_.lanesOf(
-            isPoint ? intensityToward(light, ray.origin, connection->distance)
-                    : light.radiance({ray.direction, connection->distance, normal}));
+            isPoint ? intensityToward(light, ray.origin, connection.distance)
+                    : light.radiance({ray.direction, connection.distance, normal}));
         if (isBlack(emitted) || !isLensVisible(y.point, ray)) return;
         JoinDensities join;
-        join.lightEnd = isPoint ? 0.0f : pdfArea(ray, connection->distance, normal);
+        join.lightEnd = isPoint ? 0.0f : pdfArea(ray, connection.distance, normal);
         const Spectrum value =
-            emitted * (importance(ray, connection->distance, normal) / y.density.fromLight);
-        splat(1, lane, connection->film, value,
+            emitted * (importance(ray, connection.distance, normal) / y.density.fromLight);
+        splat(1, lane, connection.film, value,
               weightOf(sample_, lens(), sample_.lightVertices(1), join));
     }
 
-    void connectInfinityToLens(const PathVertex& y, Vec2 apertureUniform, int lane) {
-        const auto connection =
-            view_.camera.connectToInfinity(y.wo, apertureUniform, wavelengths_, lane);
-        if (!connection || !isOnFilm(connection->film)) return;
-        const CameraRay& ray = connection->ray;
+    void addInfinity(int lane, const CameraConnection& connection) {
+        const PathVertex& y = light_.vertices[0];
+        const CameraRay& ray = connection.ray;
         if (!view_.scene.isVisibleToInfinity(ray.origin, ray.direction)) return;
         JoinDensities join;
         join.lightEnd = light_.isDirac ? 0.0f : pdfSolidAngle(ray);
         const Spectrum value =
             light_.radiance * (ray.weight * pdfSolidAngle(ray) / y.density.fromLight);
-        splat(1, lane, connection->film, value,
+        splat(1, lane, connection.film, value,
               weightOf(sample_, lens(), sample_.lightVertices(1), join));
     }
 
@@ -111,10 +122,10 @@ private:
     }
 
     void splat(std::size_t s, int lane, Vec2 film, const Spectrum& value, float weight) {
-        const bool isAlone = isParted(view_) && !light_.vertices[s - 1].isHeroOnly;
         const Spectrum landing =
-            isAlone ? Spectrum::fromLanes([&](int i) { return i == lane ? value[i] : 0.0f; })
-                    : value;
+            partsColors(light_.vertices[s - 1])
+                ? Spectrum::fromLanes([&](int i) { return i == lane ? value[i] : 0.0f; })
+                : value;
         sample_.result.contributions.push_back({.technique = {static_cast<int>(s), 1},
                                                 .value = sample_.color.onFilm(landing),
                                                 .weight = weight,

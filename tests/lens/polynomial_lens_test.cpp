@@ -145,7 +145,8 @@ TEST_CASE("PolynomialLens: connect finds the film point that trace started from"
 TEST_CASE(
     "PolynomialLens: a sighting's ray meets the target, its weight is that of the ray there") {
     for (const Fitted* fitted : {&doubleGaussIn(FitForm::twoPoint), &fisheye()})
-        for (const double distance : {300.0, 1e5}) {
+        for (const auto& [distance, isLast] :
+             {std::pair(300.0, false), std::pair(1e5, false), std::pair(300.0, true)}) {
             double offs = 0.0;
             int count = 0;
             for (std::uint64_t i = 0; i < 300; ++i) {
@@ -153,7 +154,12 @@ TEST_CASE(
                 const auto ray = fitted->lens.trace(q.sensor, q.aperture, q.wavelengthNm);
                 if (!ray) continue;
                 const Eigen::Vector3d target = ray->origin + distance * ray->direction;
-                const auto seen = fitted->lens.see(target, q.aperture, q.wavelengthNm);
+                // Alone, or from where the search at another wavelength has ended.
+                const double wavelengthsNm[] = {700.0, 400.0, q.wavelengthNm};
+                std::optional<Sighting> sightings[3];
+                if (isLast) fitted->lens.seeEach(target, q.aperture, wavelengthsNm, sightings);
+                const auto seen =
+                    isLast ? sightings[2] : fitted->lens.see(target, q.aperture, q.wavelengthNm);
                 REQUIRE(seen.has_value());
                 const Eigen::Vector3d toTarget = target - seen->ray.origin;
                 // The search may end 2e-5 rad off, and the last step squares that.

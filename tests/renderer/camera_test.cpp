@@ -177,9 +177,11 @@ TEST_CASE("Camera: the first wavelength is the one traced, against a sensor set 
         const auto connection = camera.connect({0.0f, 0.0f, 3.0f}, {}, wavelengths);
         REQUIRE(connection.has_value());
         CHECK(connection->ray.weight == ray->weight);
-        const auto second = camera.connect({0.0f, 0.0f, 3.0f}, {}, wavelengths, 1);
-        REQUIRE(second.has_value());
-        CHECK(second->ray.weight == doctest::Approx(450.0 / 550.0).epsilon(2 * epsilon));
+        const CameraConnections each = camera.connectEach({0.0f, 0.0f, 3.0f}, {}, wavelengths);
+        REQUIRE(each[0].has_value());
+        CHECK(each[0]->ray.weight == ray->weight);
+        REQUIRE(each[1].has_value());
+        CHECK(each[1]->ray.weight == doctest::Approx(450.0 / 550.0).epsilon(2 * epsilon));
     }
 }
 

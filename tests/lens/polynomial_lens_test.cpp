@@ -145,8 +145,7 @@ TEST_CASE("PolynomialLens: connect finds the film point that trace started from"
 TEST_CASE(
     "PolynomialLens: a sighting's ray meets the target, its weight is that of the ray there") {
     for (const Fitted* fitted : {&doubleGaussIn(FitForm::twoPoint), &fisheye()})
-        for (const auto& [distance, isLast] :
-             {std::pair(300.0, false), std::pair(1e5, false), std::pair(300.0, true)}) {
+        for (const double distance : {300.0, 1e5}) {
             double offs = 0.0;
             int count = 0;
             for (std::uint64_t i = 0; i < 300; ++i) {
@@ -154,26 +153,28 @@ TEST_CASE(
                 const auto ray = fitted->lens.trace(q.sensor, q.aperture, q.wavelengthNm);
                 if (!ray) continue;
                 const Eigen::Vector3d target = ray->origin + distance * ray->direction;
-                // Alone, or from where the search at another wavelength has ended.
-                const double wavelengthsNm[] = {700.0, 400.0, q.wavelengthNm};
-                std::optional<Sighting> sightings[3];
-                if (isLast) fitted->lens.seeEach(target, q.aperture, wavelengthsNm, sightings);
-                const auto seen =
-                    isLast ? sightings[2] : fitted->lens.see(target, q.aperture, q.wavelengthNm);
-                REQUIRE(seen.has_value());
-                const Eigen::Vector3d toTarget = target - seen->ray.origin;
-                // The search may end 2e-5 rad off, and the last step squares that.
-                const double missed = toTarget.cross(seen->ray.direction).norm() / toTarget.norm();
-                CHECK(missed <= 2.0 * 2e-5 * 2e-5);
-                CHECK(std::abs(seen->ray.direction.norm() - 1.0) <= 1e-14);
                 const auto weight = [&](const ExitRay& r) {
                     return r.throughput / determinantAcross(r.direction, footprint(r, distance));
                 };
-                const double off = weight(seen->ray) / weight(*ray) - 1.0;
-                // Of 2e-5 rad; weights change by ten times themselves a radian near the rim.
-                CHECK(std::abs(off) <= 2e-4);
-                offs += off;
-                ++count;
+                // Alone, and from where the search at another wavelength has ended.
+                const double wavelengthsNm[] = {700.0, 400.0, q.wavelengthNm};
+                std::optional<Sighting> sightings[3];
+                fitted->lens.seeEach(target, q.aperture, wavelengthsNm, sightings);
+                for (const std::optional<Sighting>& seen :
+                     {fitted->lens.see(target, q.aperture, q.wavelengthNm), sightings[2]}) {
+                    REQUIRE(seen.has_value());
+                    const Eigen::Vector3d toTarget = target - seen->ray.origin;
+                    // The search may end 2e-5 rad off, and the last step squares that.
+                    const double missed =
+                        toTarget.cross(seen->ray.direction).norm() / toTarget.norm();
+                    CHECK(missed <= 2.0 * 2e-5 * 2e-5);
+                    CHECK(std::abs(seen->ray.direction.norm() - 1.0) <= 1e-14);
+                    const double off = weight(seen->ray) / weight(*ray) - 1.0;
+                    // Of 2e-5 rad; weights change by ten times themselves a radian near the rim.
+                    CHECK(std::abs(off) <= 2e-4);
+                    offs += off;
+                    ++count;
+                }
             }
             CHECK(std::abs(offs / count) <= 1e-5);  // and no bias to speak of
         }

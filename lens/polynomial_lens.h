@@ -29,8 +29,8 @@ public:
     /// that leaves within 2e-5 rad of it, a tenth of what fits err by.
     std::optional<Sighting> see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                 double wavelengthNm) const override;
-    /// What a first guess misses by hardly changes with the wavelength: from the second on, one
-    /// evaluation mostly does.
+    /// From the second wavelength on a first guess is moved by what the one before missed by, which
+    /// hardly changes with the wavelength.
     void seeEach(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                  std::span<const double> wavelengthsNm,
                  std::span<std::optional<Sighting>> sightings) const override;

@@ -31,12 +31,12 @@ Examples:
   etendue render scenes/still-life/scene.toml -o out/picture.exr --preview out/picture.png
   etendue render model.obj -o out/model.exr --samples 256 --size 640,480
   etendue render scene.toml -o a.exr -s camera.f_number=5.6 -s material.glass.ior=1.7
+  etendue render scene.toml -o a.exr --estimator bdpt --camera scenes/cameras/fisheye.toml
   etendue render scene.toml -o a.exr --time 60 --layers albedo,normal,depth
   etendue render scene.toml -o a.exr --resume --samples 4096
   etendue merge a.part.exr b.part.exr -o picture.exr
   etendue farm slurm scene.toml --samples 4096 --task-samples 64 -o out/farm --submit
   etendue check scene.toml
-  etendue render scene.toml -o a.exr --estimator bdpt --camera scenes/cameras/fisheye.toml
   etendue replay scene.toml --pixel 360,240 --sample 0 --estimator bdpt
   etendue compare out/picture.exr out/reference.exr --error-image out/error.png
   etendue bench agreement cornell-box --cameras pinhole,double-gauss

@@ -143,6 +143,7 @@ public:
         std::erase_if(result.contributions, [](const Contribution& c) { return c.isSplat; });
     }
     int lightPathsPerSample() const override { return whole_->lightPathsPerSample(); }
+    bool hasCameraLight() const override { return whole_->hasCameraLight(); }
 
 private:
     std::unique_ptr<Estimator> whole_;

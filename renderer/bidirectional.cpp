@@ -32,6 +32,7 @@ public:
     }
 
     int lightPathsPerSample() const override { return needsLight_ ? settings_.lightPaths : 0; }
+    bool hasCameraLight() const override { return needsCamera_; }
 
 private:
     EstimatorSettings settings_;

@@ -90,6 +90,8 @@ public:
     /// over the samples, plus the mean of what is splatted on it over all light paths. 0: none, and
     /// nothing is splatted.
     virtual int lightPathsPerSample() const { return 0; }
+    /// Whether anything else than splats is contributed.
+    virtual bool hasCameraLight() const { return true; }
 };
 
 /// The film point by the filter and the lens point uniform on the aperture, alike for every

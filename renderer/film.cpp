@@ -15,6 +15,12 @@ namespace {
 
 Vec3 firstLanes(const Spectrum& s) { return {s[0], s[1], s[2]}; }
 
+/// Of a pixel's three; zero where there are none.
+Vec3d colorOf(const ExactSums& sums, std::size_t pixel) {
+    if (sums.empty()) return {};
+    return {sums[3 * pixel], sums[3 * pixel + 1], sums[3 * pixel + 2]};
+}
+
 /// Zero where there was nothing to divide.
 double mean(double sum, double count) { return count > 0.0 ? sum / count : 0.0; }
 
@@ -55,17 +61,17 @@ Film::Film(const FrameWindow& window, const FilmLayers& layers, FilmColor color)
     if (!isInside(window.x, window.width, window.fullWidth) ||
         !isInside(window.y, window.height, window.fullHeight))
         throw std::invalid_argument("film: the window must have pixels and lie in the full frame");
-    state_.sums.resize(pixelCount() * static_cast<std::size_t>(slots_.count));
+    state_.layerSums.resize(pixelCount() * static_cast<std::size_t>(slots_.count));
 }
 
 void Film::addTo(std::size_t slot, double value) {
-    if (!state_.sums.add(slot, value)) countRounded();
+    if (!state_.layerSums.add(slot, value)) countRounded();
 }
 
-void Film::addSquare(std::size_t slot, double value) { state_.sums.add(slot, value * value); }
+void Film::addSquare(std::size_t slot, double value) { state_.layerSums.add(slot, value * value); }
 
 void Film::addTo(std::size_t slot, Vec3 v) {
-    if (!state_.sums.addThree(slot, double{v.x}, double{v.y}, double{v.z})) countRounded();
+    if (!state_.layerSums.addThree(slot, double{v.x}, double{v.y}, double{v.z})) countRounded();
 }
 
 void Film::expectSplats(std::uint64_t lightPathsPerSample) {
@@ -85,9 +91,12 @@ bool Film::countBad() {
 
 bool Film::add(int x, int y, const Spectrum& value) {
     if (!isUsable(value)) return countBad();
+    if (state_.cameraSums.empty())
+        throw std::logic_error("film: a camera sample, where no light of them was expected");
     const Vec3 color = firstLanes(value);
     const std::size_t pixel = pixelNumber(x, y);
-    addTo(slotOf(pixel, 0), color);
+    if (!state_.cameraSums.addThree(3 * pixel, double{color.x}, double{color.y}, double{color.z}))
+        countRounded();
     if (slots_.squares >= 0)
         for (int i = 0; i < 3; ++i) addSquare(slotOf(pixel, slots_.squares + i), double{color[i]});
     if (slots_.luminanceSquare >= 0) {
@@ -134,9 +143,10 @@ void Film::checkSize(const FilmState& other) const {
     const auto fits = [](std::size_t size, std::size_t expected) {
         return size == 0 || size == expected;
     };
-    if (other.sums.size() != state_.sums.size() || other.sums.rests.size() != other.sums.size() ||
-        !fits(other.splatSums.size(), 3 * pixelCount()) ||
-        other.splatSums.rests.size() != other.splatSums.size() ||
+    const auto haveRests = [](const ExactSums& sums) { return sums.rests.size() == sums.size(); };
+    if (!fits(other.cameraSums.size(), 3 * pixelCount()) || !haveRests(other.cameraSums) ||
+        !fits(other.splatSums.size(), 3 * pixelCount()) || !haveRests(other.splatSums) ||
+        other.layerSums.size() != state_.layerSums.size() || !haveRests(other.layerSums) ||
         !fits(other.extraSamples.size(), pixelCount()) ||
         !fits(other.sampleLuminance.size(), layers_.luminanceVariance ? pixelCount() : 0))
         throw std::invalid_argument("film: the state is of another window or of other layers");
@@ -149,8 +159,9 @@ void Film::merge(const FilmState& other) {
         for (std::size_t i = 0; i < from.size(); ++i)
             if (!to.add(i, from.sums[i], from.rests[i])) ++state_.roundedTerms;
     };
-    addAll(state_.sums, other.sums);
+    addAll(state_.cameraSums, other.cameraSums);
     addAll(state_.splatSums, other.splatSums);
+    addAll(state_.layerSums, other.layerSums);
     if (!other.extraSamples.empty()) expectUnfinishedSample();
     for (std::size_t pixel = 0; pixel < other.extraSamples.size(); ++pixel)
         state_.extraSamples[pixel] =
@@ -174,22 +185,16 @@ double Film::sampleCount(std::size_t pixel) const {
 }
 
 Vec3d Film::meanColor(std::size_t pixel) const {
-    const auto three = [](const ExactSums& sums, std::size_t i) {
-        return Vec3d{sums[i], sums[i + 1], sums[i + 2]};
-    };
-    Vec3d value = three(state_.sums, slotOf(pixel, 0)) * mean(1.0, sampleCount(pixel));
-    if (!state_.splatSums.empty())
-        value +=
-            three(state_.splatSums, 3 * pixel) * mean(1.0, static_cast<double>(state_.lightPaths));
-    return value;
+    return colorOf(state_.cameraSums, pixel) * mean(1.0, sampleCount(pixel)) +
+           colorOf(state_.splatSums, pixel) * mean(1.0, static_cast<double>(state_.lightPaths));
 }
 
 double Film::luminance(std::size_t pixel) const { return luminanceOf(meanColor(pixel)); }
 
 double Film::luminanceVariance(std::size_t pixel) const {
     const double n = sampleCount(pixel);
-    return varianceOfMean(n * luminance(pixel), state_.sums[slotOf(pixel, slots_.luminanceSquare)],
-                          n);
+    return varianceOfMean(n * luminance(pixel),
+                          state_.layerSums[slotOf(pixel, slots_.luminanceSquare)], n);
 }
 
 std::vector<ExrChannels> Film::channels() const {
@@ -204,7 +209,9 @@ std::vector<ExrChannels> Film::channels() const {
                 image.pixels.push_back(static_cast<float>(value(pixel, i)));
         result.push_back(std::move(image));
     };
-    const auto sum = [&](std::size_t pixel, int slot) { return state_.sums[slotOf(pixel, slot)]; };
+    const auto sum = [&](std::size_t pixel, int slot) {
+        return state_.layerSums[slotOf(pixel, slot)];
+    };
     const auto overSamples = [&](int slot) {
         return [&, slot](std::size_t pixel, int i) {
             return mean(sum(pixel, slot + i), sampleCount(pixel));
@@ -224,8 +231,8 @@ std::vector<ExrChannels> Film::channels() const {
                      ? std::vector<std::string>{"variance.X", "variance.Y", "variance.Z"}
                      : std::vector<std::string>{"variance.R", "variance.G", "variance.B"},
                  [&](std::size_t pixel, int i) {
-                     return varianceOfMean(sum(pixel, i), sum(pixel, slots_.squares + i),
-                                           sampleCount(pixel));
+                     return varianceOfMean(colorOf(state_.cameraSums, pixel)[i],
+                                           sum(pixel, slots_.squares + i), sampleCount(pixel));
                  });
     // Of a spectral film that is one of the three above.
     if (layers_.luminanceVariance && !(layers_.variance && color_ == FilmColor::xyz))

@@ -14,9 +14,8 @@
 
 namespace etendue {
 
-/// Auxiliary images, recorded only when asked for. Beauty alone takes 36 bytes a pixel. Normal,
-/// depth and position are means over those samples that meet something, and zero where none does:
-/// image files ought not to hold infinities.
+/// Auxiliary images, recorded only when asked for. Normal, depth and position are means over those
+/// samples that meet something, and zero where none does: image files ought not to hold infinities.
 struct FilmLayers {
     bool albedo = false;  // mean over all samples; one that meets nothing counts as black
     bool normal = false;
@@ -39,8 +38,10 @@ struct FilmFeatures {
 
 /// All that a film remembers; write it down and a render can go on elsewhere.
 struct FilmState {
-    ExactSums sums;       // pixel after pixel of the window, row by row
-    ExactSums splatSums;  // three a pixel; empty when nothing is splatted
+    // Pixel after pixel of the window, row by row.
+    ExactSums cameraSums;  // three a pixel; empty when camera samples bring no light
+    ExactSums splatSums;   // three a pixel; empty when nothing is splatted
+    ExactSums layerSums;   // as many as the layers have
     std::uint64_t samples = 0;
     std::uint64_t lightPaths = 0;  // of the whole frame, not of the window alone
     std::uint64_t badSamples = 0;
@@ -81,6 +82,8 @@ public:
     explicit Film(const FrameWindow& window, const FilmLayers& layers = {},
                   FilmColor color = FilmColor::rgb);
 
+    /// From now on camera samples bring light. To be called before add(); 36 bytes a pixel.
+    void expectCameraLight() { state_.cameraSums.resize(3 * pixelCount()); }
     /// Adds one sample's first three lanes. One that is negative or not finite is counted, left
     /// out, and reported by `false`.
     bool add(int x, int y, const Spectrum& value);
@@ -88,7 +91,7 @@ public:
     /// finite is counted and left out.
     bool addFeatures(int x, int y, const FilmFeatures& features);
     /// From now on light is splatted, by so many light paths of the whole frame in each sample. To
-    /// be called before addSplat.
+    /// be called before addSplat(); as many bytes again.
     void expectSplats(std::uint64_t lightPathsPerSample);
     /// Adds light that a light path brought to pixel (x, y) of the window: the film holds the mean
     /// over all light paths. The value must be finite and not negative (isUsable).
@@ -142,7 +145,7 @@ public:
         return static_cast<std::size_t>(window_.width) * static_cast<std::size_t>(window_.height);
     }
 
-    /// How many sums a pixel has in FilmState::sums.
+    /// How many sums a pixel has in FilmState::layerSums.
     static int sumsPerPixel(const FilmLayers& layers) { return slotsFor(layers).count; }
 
     const FrameWindow& window() const { return window_; }
@@ -154,11 +157,11 @@ public:
     bool wantsFeatures() const { return slots_.hits >= 0; }
 
 private:
-    /// Where in a pixel's run of sums a layer's begin, or −1. Beauty begins at 0.
+    /// Where in a pixel's run of FilmState::layerSums a layer's begin, or −1.
     struct Slots {
         int squares = -1, luminanceSquare = -1, albedo = -1, hits = -1, normal = -1, depth = -1,
             position = -1;
-        int count = 3;
+        int count = 0;
     };
     static Slots slotsFor(const FilmLayers& layers);
 
@@ -168,11 +171,11 @@ private:
         return static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
                static_cast<std::size_t>(x - window_.x);
     }
-    /// Where a pixel's sum lies.
+    /// Where a pixel's sum of a layer lies.
     std::size_t slotOf(std::size_t pixel, int slot) const {
         return pixel * static_cast<std::size_t>(slots_.count) + static_cast<std::size_t>(slot);
     }
-    /// Adds to a sum, or to three.
+    /// Adds to a layer's sum, or to three.
     void addTo(std::size_t slot, Vec3 v);
     void addTo(std::size_t slot, double value);
     /// Squares of small samples have to be rounded beside others: no picture's sum is, by that.

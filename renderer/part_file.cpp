@@ -126,9 +126,11 @@ void requireFinite(const FilmState& state, const fs::path& file) {
     const auto isFinite = [](const auto& values) {
         return std::ranges::all_of(values, [](auto v) { return std::isfinite(v); });
     };
-    if (!isFinite(state.sums.sums) || !isFinite(state.sums.rests) ||
-        !isFinite(state.splatSums.sums) || !isFinite(state.splatSums.rests) ||
-        !isFinite(state.sampleLuminance))
+    const auto areFinite = [&](const ExactSums& sums) {
+        return isFinite(sums.sums) && isFinite(sums.rests);
+    };
+    if (!areFinite(state.cameraSums) || !areFinite(state.splatSums) ||
+        !areFinite(state.layerSums) || !isFinite(state.sampleLuminance))
         throw damaged(file, "has sums that are not finite");
 }
 
@@ -171,15 +173,16 @@ void writePart(const fs::path& file, const PartInfo& info, const Film& film,
         writer.write(picture);
     }
     Trailer trailer{magic, writer.size(), 0, {}};
-    const std::string header = partHeaderText(
-        info, state,
-        {!state.splatSums.empty(), !state.extraSamples.empty(), !state.sampleLuminance.empty()});
+    const std::string header =
+        partHeaderText(info, state,
+                       {!state.cameraSums.empty(), !state.splatSums.empty(),
+                        !state.extraSamples.empty(), !state.sampleLuminance.empty()});
     trailer.headerSize = header.size();
     writer.write(header.data(), header.size());
-    writer.write(state.sums.sums);
-    writer.write(state.sums.rests);
-    writer.write(state.splatSums.sums);
-    writer.write(state.splatSums.rests);
+    for (const ExactSums* sums : {&state.cameraSums, &state.splatSums, &state.layerSums}) {
+        writer.write(sums->sums);
+        writer.write(sums->rests);
+    }
     writer.write(state.extraSamples);
     writer.write(state.sampleLuminance);
     writer.write(&trailer, sizeof trailer - sizeof trailer.digest);
@@ -204,9 +207,10 @@ Part readPart(const fs::path& file) {
         reader.read(sums.sums, count);
         reader.read(sums.rests, count);
     };
-    readSums(state.sums,
-             pixels * static_cast<std::size_t>(Film::sumsPerPixel(header.part.info.layers)));
+    if (header.planes.cameraSums) readSums(state.cameraSums, 3 * pixels);
     if (header.planes.splatSums) readSums(state.splatSums, 3 * pixels);
+    readSums(state.layerSums,
+             pixels * static_cast<std::size_t>(Film::sumsPerPixel(header.part.info.layers)));
     if (header.planes.extraSamples) reader.read(state.extraSamples, pixels);
     if (header.planes.sampleLuminance) reader.read(state.sampleLuminance, pixels);
     requireFinite(state, file);

@@ -49,7 +49,7 @@ std::filesystem::path previousPart(const std::filesystem::path& part);
 void writePart(const std::filesystem::path& file, const PartInfo& info, const Film& film,
                const Metadata& metadata);
 
-/// Throws InputError for a file that is missing, no part, damaged anywhere, or of a later version.
+/// Throws InputError for a file that is missing, no part, damaged anywhere, or of another version.
 Part readPart(const std::filesystem::path& file);
 /// The same without the sums, but for the check of the whole file.
 PartInfo readPartInfo(const std::filesystem::path& file);

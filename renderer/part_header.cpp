@@ -14,7 +14,7 @@ namespace etendue {
 
 namespace {
 
-constexpr int version = 1;
+constexpr int version = 2;
 constexpr double mostCount = 0x1p62;
 
 struct LayerName {
@@ -32,7 +32,8 @@ struct PlaneName {
     const char* name;
     bool PartPlanes::*isThere;
 };
-constexpr std::array planeNames{PlaneName{"splat-sums", &PartPlanes::splatSums},
+constexpr std::array planeNames{PlaneName{"camera-sums", &PartPlanes::cameraSums},
+                                PlaneName{"splat-sums", &PartPlanes::splatSums},
                                 PlaneName{"extra-samples", &PartPlanes::extraSamples},
                                 PlaneName{"sample-luminance", &PartPlanes::sampleLuminance}};
 
@@ -159,6 +160,7 @@ std::uint64_t bytesOfSums(const PartHeader& header) {
                         static_cast<std::uint64_t>(info.window.height);
     constexpr std::uint64_t perSum = sizeof(double) + sizeof(float);
     std::uint64_t perPixel = static_cast<std::uint64_t>(Film::sumsPerPixel(info.layers)) * perSum;
+    if (header.planes.cameraSums) perPixel += 3 * perSum;
     if (header.planes.splatSums) perPixel += 3 * perSum;
     if (header.planes.extraSamples) perPixel += sizeof(std::uint16_t);
     if (header.planes.sampleLuminance) perPixel += sizeof(float);
@@ -199,7 +201,7 @@ PartHeader parsePartHeader(std::string_view text, const std::filesystem::path& f
     PartHeader header;
     PartInfo& info = header.part.info;
     if (part.integer("version", {1, 1e6}) != version)
-        part.fail("version", "this part was written by a later version of the program");
+        part.fail("version", "this part was written by another version of the program");
     parseSamples(part, info, header.part.state);
     setFlags(part, "planes", planeNames, &PlaneName::isThere, header.planes);
     info.window = parseWindow(film);

@@ -10,9 +10,9 @@
 
 namespace etendue {
 
-/// Which of the film's sums a part has; those of the camera's samples it always has.
+/// Which of the film's sums a part has; those of layers it always has.
 struct PartPlanes {
-    bool splatSums = false, extraSamples = false, sampleLuminance = false;
+    bool cameraSums = false, splatSums = false, extraSamples = false, sampleLuminance = false;
 };
 
 struct PartHeader {

@@ -69,6 +69,7 @@ struct Recorder {
     TechniqueImages* images;
     std::uint64_t seed;
     Sampler sampler;
+    bool hasCameraLight = estimator.hasCameraLight();
 
     std::mutex badMutex{};
     std::vector<BadSample> bad{};
@@ -103,7 +104,8 @@ struct Recorder {
             if (images) images->add(x, y, c.technique, c.value, c.weight);
         }
         if (!isOwn) return;
-        if (!film.add(x, y, sum)) rememberBad({x, y, index, {}});
+        if (hasCameraLight || !isBlack(sum))
+            if (!film.add(x, y, sum)) rememberBad({x, y, index, {}});
         if (const auto& hit = sample.firstHit)
             film.addFeatures(
                 x, y, {hit->albedo, hit->point.shading.z, hit->point.position, hit->distance});
@@ -213,6 +215,7 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
     const auto lightPaths = static_cast<std::uint64_t>(estimator.lightPathsPerSample());
     const std::vector<Part> parts = partsFor(film.window(), lightPaths > 0);
     std::vector<SplatList> lists;
+    if (estimator.hasCameraLight()) film.expectCameraLight();
     if (lightPaths > 0) {
         film.expectSplats(lightPaths * pixelsOf(parts));
         lists.resize(listCount(settings.threads, lightPaths), SplatList(film.window(), filter));

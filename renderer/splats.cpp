@@ -37,7 +37,6 @@ public:
         const float radius = filter_.radius();
         const Reach columns(splat.film.x, radius, window.x, window.x + window.width);
         const Reach rows(splat.film.y, radius, firstRow_, endRow_);
-        const Spectrum value = rgb(splat.value.x, splat.value.y, splat.value.z);
         columnDensities_.clear();
         for (int x = columns.first; x <= columns.last; ++x)
             columnDensities_.push_back(
@@ -49,8 +48,9 @@ public:
                 const auto share = static_cast<float>(
                     columnDensities_[static_cast<std::size_t>(x - columns.first)] * rowDensity);
                 if (share == 0.0f) continue;
-                film_.addSplat(x, y, value * (splat.weight * share));
-                if (images_) images_->add(x, y, {splat.s, splat.t}, value * share, splat.weight);
+                film_.addSplat(x, y, splat.value * (splat.weight * share));
+                if (images_)
+                    images_->add(x, y, {splat.s, splat.t}, splat.value * share, splat.weight);
             }
         }
     }
@@ -91,9 +91,7 @@ void SplatList::add(const Contribution& splat) {
     const Reach columns(splat.film.x, radius_, window_.x, window_.x + window_.width);
     const Reach rows(splat.film.y, radius_, window_.y, window_.y + window_.height);
     if (columns.first > columns.last || rows.first > rows.last) return;
-    splats_.push_back({splat.film,
-                       {splat.value[0], splat.value[1], splat.value[2]},
-                       splat.weight,
+    splats_.push_back({splat.value, splat.film, splat.weight,
                        static_cast<std::uint16_t>(splat.technique.s),
                        static_cast<std::uint16_t>(splat.technique.t)});
     forEachBand(rows.first, rows.last, [&](std::size_t b) { ++bandEnds_[b + 1]; });

@@ -17,8 +17,8 @@ namespace etendue {
 class SplatList {
 public:
     struct Splat {
+        Spectrum value;  // what the film adds, not weighted
         Vec2 film;
-        Vec3 value;  // not weighted
         float weight;
         std::uint16_t s, t;  // the technique
     };

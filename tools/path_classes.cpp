@@ -134,6 +134,7 @@ public:
     }
 
     int lightPathsPerSample() const override { return estimator_->lightPathsPerSample(); }
+    bool hasCameraLight() const override { return estimator_->hasCameraLight(); }
 
     void takeSample(const View& view, SampleId id, SampleRequest request,
                     Sample& result) const override {

@@ -19,6 +19,7 @@ public:
           framePixels_(static_cast<float>(loaded.film.width * loaded.film.height)) {}
 
     int lightPathsPerSample() const override { return estimator_.lightPathsPerSample(); }
+    bool hasCameraLight() const override { return estimator_.hasCameraLight(); }
 
     void takeSample(const View& view, SampleId id, SampleRequest request,
                     Sample& result) const override {

@@ -22,6 +22,13 @@ FrameWindow fullFrame(int width, int height) { return {width, height, 0, 0, widt
 constexpr FilmLayers everything{
     .albedo = true, .normal = true, .depth = true, .position = true, .variance = true};
 
+/// As of an estimator whose camera samples bring light.
+Film litFilm(const FrameWindow& window, const FilmLayers& layers = {}) {
+    Film film(window, layers);
+    film.expectCameraLight();
+    return film;
+}
+
 /// The image whose first channel is called `name`.
 ExrChannels image(const Film& film, const std::string& name) {
     for (const ExrChannels& channels : film.channels())
@@ -47,7 +54,7 @@ void addNoise(Film& film, std::uint32_t firstSample, std::uint32_t count) {
 }
 
 TEST_CASE("Film: a pixel is the mean of its samples") {
-    Film film(fullFrame(3, 2));
+    Film film = litFilm(fullFrame(3, 2));
     film.add(0, 0, rgb(1, 2, 3));
     film.add(0, 0, rgb(3, 0, 4));
     film.add(2, 1, rgb(0, 8, 0));
@@ -65,7 +72,7 @@ TEST_CASE("Film: a pixel is the mean of its samples") {
 }
 
 TEST_CASE("Film: many small samples are not lost beside a large one") {
-    Film film(fullFrame(1, 1));
+    Film film = litFilm(fullFrame(1, 1));
     film.add(0, 0, rgb(16777216.0f, 0, 0));  // 2²⁴, to which a float adds no 1
     constexpr int count = 1000000;
     for (int i = 0; i < count; ++i) film.add(0, 0, rgb(1, 0, 0));
@@ -73,16 +80,28 @@ TEST_CASE("Film: many small samples are not lost beside a large one") {
     CHECK(image(film, "R").pixels[0] == 17777216.0f);
 }
 
-TEST_CASE("Film: beauty alone takes less than 64 bytes a pixel") {
-    const Film film(fullFrame(100, 10));
-    CHECK(film.state().sums.size() * (sizeof(double) + sizeof(float)) < 64 * 1000);
+TEST_CASE("Film: it has room for the light that is expected, 36 bytes a pixel of either kind") {
+    const auto bytes = [](const Film& film) {
+        const FilmState& state = film.state();
+        const std::size_t sums =
+            state.cameraSums.size() + state.splatSums.size() + state.layerSums.size();
+        return sums * (sizeof(double) + sizeof(float));
+    };
+    Film film(fullFrame(100, 10));
     CHECK_FALSE(film.wantsFeatures());
+    CHECK(bytes(film) == 0);
+    film.expectSplats(1000);
+    CHECK(bytes(film) == 36 * 1000);
+    CHECK_THROWS_AS(film.add(0, 0, rgb(1, 1, 1)), std::logic_error);
+    film.expectCameraLight();
+    CHECK(film.add(0, 0, rgb(1, 1, 1)));
+    CHECK(bytes(film) == 72 * 1000);
 }
 
 TEST_CASE("Film: a crop is that window of the full frame") {
-    Film full(fullFrame(16, 9), everything);
+    Film full = litFilm(fullFrame(16, 9), everything);
     const FrameWindow window{16, 9, 5, 2, 7, 4};
-    Film crop(window, everything);
+    Film crop = litFilm(window, everything);
     addNoise(full, 0, 8);
     addNoise(crop, 0, 8);
     const auto fullChannels = full.channels(), cropChannels = crop.channels();
@@ -100,14 +119,14 @@ TEST_CASE("Film: a crop is that window of the full frame") {
 }
 
 TEST_CASE("Film: merging two ranges of samples gives the render of their union") {
-    Film whole(fullFrame(6, 5), everything), first(fullFrame(6, 5), everything),
-        second(fullFrame(6, 5), everything);
+    Film whole = litFilm(fullFrame(6, 5), everything), first = whole, second = whole;
     addNoise(whole, 0, 16);
     addNoise(first, 0, 5);
     addNoise(second, 5, 11);
     first.merge(second.state());
     CHECK(first.samples() == 16);
-    CHECK(first.state().sums == whole.state().sums);
+    CHECK(first.state().cameraSums == whole.state().cameraSums);
+    CHECK(first.state().layerSums == whole.state().layerSums);
     CHECK(first.state().roundedTerms == 0);
     Film other(fullFrame(5, 5), everything), fewer(fullFrame(6, 5));
     CHECK_THROWS_AS(first.merge(other.state()), std::invalid_argument);
@@ -118,7 +137,7 @@ TEST_CASE("Film: parts merge to the same bits in whatever order, splats and all"
     FilmLayers layers;
     layers.luminanceVariance = true;
     constexpr int parts = 5;
-    std::vector<Film> films(parts + 1, Film(fullFrame(6, 5), layers));  // the last: all at once
+    std::vector<Film> films(parts + 1, litFilm(fullFrame(6, 5), layers));  // the last: all at once
     for (Film& film : films) film.expectSplats(30);
     for (int sample = 0; sample < 40; ++sample)
         for (Film* film : {&films[static_cast<std::size_t>(sample / 8)], &films[parts]}) {
@@ -132,7 +151,8 @@ TEST_CASE("Film: parts merge to the same bits in whatever order, splats and all"
          {std::vector<std::size_t>{0, 1, 2, 3, 4}, {4, 2, 0, 3, 1}, {3, 4, 1, 2, 0}}) {
         Film merged(fullFrame(6, 5), layers);
         for (const std::size_t i : order) merged.merge(films[i].state());
-        CHECK(merged.state().sums == films[parts].state().sums);
+        CHECK(merged.state().cameraSums == films[parts].state().cameraSums);
+        CHECK(merged.state().layerSums == films[parts].state().layerSums);
         CHECK(merged.state().splatSums == films[parts].state().splatSums);
         CHECK(merged.state().roundedTerms == 0);
         CHECK(image(merged, "variance.Y").pixels == image(films[parts], "variance.Y").pixels);
@@ -142,7 +162,7 @@ TEST_CASE("Film: parts merge to the same bits in whatever order, splats and all"
 TEST_CASE("Film: the luminance's variance is that of whole samples, splats included") {
     FilmLayers layers;
     layers.luminanceVariance = true;
-    Film film(fullFrame(1, 1), layers);
+    Film film = litFilm(fullFrame(1, 1), layers);
     film.expectSplats(2);
     // Two light paths a sample. Luminances 1 + 3, 0 + 1, 2 + 0: mean 7/3, their variance 7/3.
     const float camera[] = {1, 0, 2}, splats[] = {3, 1, 0};
@@ -159,7 +179,7 @@ TEST_CASE("Film: the luminance's variance is that of whole samples, splats inclu
 }
 
 TEST_CASE("Film: a pixel that has had an unfinished sample is divided by one more") {
-    Film film(fullFrame(2, 1));
+    Film film = litFilm(fullFrame(2, 1));
     for (int x = 0; x < 2; ++x) film.add(x, 0, rgb(1, 1, 1));
     film.addSamples(1);
     film.expectUnfinishedSample();
@@ -174,20 +194,21 @@ TEST_CASE("Film: a pixel that has had an unfinished sample is divided by one mor
 }
 
 TEST_CASE("Film: a render goes on from a saved state to the same bits") {
-    Film whole(fullFrame(6, 5), everything), stopped(fullFrame(6, 5), everything),
-        resumed(fullFrame(6, 5), everything);
+    Film whole = litFilm(fullFrame(6, 5), everything), stopped = whole,
+         resumed(fullFrame(6, 5), everything);
     addNoise(whole, 0, 7);
     addNoise(whole, 7, 9);
     addNoise(stopped, 0, 7);
     resumed.restore(stopped.state());
     addNoise(resumed, 7, 9);
-    CHECK(resumed.state().sums == whole.state().sums);
+    CHECK(resumed.state().cameraSums == whole.state().cameraSums);
+    CHECK(resumed.state().layerSums == whole.state().layerSums);
     CHECK(resumed.samples() == whole.samples());
     CHECK_THROWS_AS(resumed.restore(FilmState{}), std::invalid_argument);
 }
 
 TEST_CASE("Film: normal, depth and position are means over what was met, albedo over all samples") {
-    Film film(fullFrame(2, 1), everything);
+    Film film = litFilm(fullFrame(2, 1), everything);
     CHECK(film.wantsFeatures());
     film.addFeatures(0, 0, {rgb(0.5f, 1, 0), {0, 0, 1}, {1, 2, 3}, 10.0f});
     film.addFeatures(0, 0, {rgb(0.5f, 0, 0), {0, 1, 0}, {3, 4, 5}, 20.0f});
@@ -203,7 +224,7 @@ TEST_CASE("Film: each layer stands alone") {
     const auto only = [](auto choose) {
         FilmLayers layers;
         choose(layers);
-        Film film(fullFrame(1, 1), layers);
+        Film film = litFilm(fullFrame(1, 1), layers);
         film.add(0, 0, rgb(1, 1, 1));
         film.add(0, 0, rgb(3, 1, 1));
         film.addFeatures(0, 0, {rgb(0.5f, 0.5f, 0.5f), {0, 0, 1}, {1, 2, 3}, 10.0f});
@@ -224,7 +245,7 @@ TEST_CASE("Film: each layer stands alone") {
 TEST_CASE("Film: the variance estimate is that of the pixel's mean, without bias") {
     // Uniform numbers: variance 1/12; of the mean of n, 1/(12 n).
     constexpr std::uint32_t n = 5;
-    Film film(fullFrame(100, 100), everything);
+    Film film = litFilm(fullFrame(100, 100), everything);
     addNoise(film, 0, n);
     const auto pixels = image(film, "variance.R").pixels;
     const Summary summary = summarize(std::vector<double>(pixels.begin(), pixels.end()));
@@ -236,7 +257,7 @@ TEST_CASE("Film: the variance estimate is that of the pixel's mean, without bias
 
 TEST_CASE("Film: the variance is zero for equal samples, and before there are two") {
     constexpr int width = 100, count = 100;
-    Film film(fullFrame(width, 1), everything);
+    Film film = litFilm(fullFrame(width, 1), everything);
     const auto addAll = [&] {
         for (int x = 0; x < width; ++x) {
             const float value = static_cast<float>(x + 1) / 97.0f;
@@ -255,7 +276,7 @@ TEST_CASE("Film: the variance is zero for equal samples, and before there are tw
 }
 
 TEST_CASE("Film: a sample that is negative or not finite is counted, reported and left out") {
-    Film film(fullFrame(1, 1), everything);
+    Film film = litFilm(fullFrame(1, 1), everything);
     CHECK(film.add(0, 0, rgb(1, 2, 3)));
     CHECK_FALSE(film.add(0, 0, rgb(nan, 0, 0)));
     CHECK_FALSE(film.add(0, 0, rgb(0, infinity, 0)));

@@ -118,6 +118,26 @@ TEST_CASE("Render: …whether the frame has more parts than are splatted at a ti
     CHECK(splats(16) == one);
 }
 
+TEST_CASE("Render: a film has room for the light that its estimator brings, and no more") {
+    struct Case {
+        const char* estimator;
+        std::size_t cameraSums, splatSums;
+    };
+    constexpr std::size_t all = 3 * 48 * 32;
+    for (const Case& c : {Case{"pt", all, 0}, {"lt", 0, all}, {"bdpt", all, all}}) {
+        CAPTURE(c.estimator);
+        const LoadedScene loaded =
+            sceneFromText(mixedScene, {std::string("estimator.kind=") + c.estimator});
+        Film film({48, 32, 0, 0, 48, 32});
+        RenderSettings settings;
+        settings.samples = 1;
+        render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator),
+               Filter(FilterKind::box), film, settings, {});
+        CHECK(film.state().cameraSums.size() == c.cameraSums);
+        CHECK(film.state().splatSums.size() == c.splatSums);
+    }
+}
+
 TEST_CASE("Render: …and for any division into passes") {
     const LoadedScene loaded = sceneFromText(mixedScene, {"estimator.kind=bdpt"});
     const std::vector<float> whole = renderPixels(loaded, 6, 3);
@@ -125,6 +145,7 @@ TEST_CASE("Render: …and for any division into passes") {
     const Filter filter(FilterKind::box);
     const View view{*loaded.scene, *loaded.camera, filter};
     const auto estimator = makeEstimator(loaded.estimator);
+    film.expectCameraLight();
     film.expectSplats(48 * 32);
     // Sample by sample and pixel by pixel, in the order that passes keep to.
     for (std::uint32_t s = 0; s < 6; ++s)

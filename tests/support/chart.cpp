@@ -119,10 +119,11 @@ std::vector<PixelMap> renderChart(const Scene& scene, const Camera& camera, cons
         if (result.badSampleCount > 0) throw std::runtime_error("the chart had bad samples");
         // The sums themselves: a picture's floats would round what is compared here.
         const FilmState& state = film.state();
-        const std::size_t stride = state.sums.size() / static_cast<std::size_t>(width * height);
         PixelMap& map = maps.emplace_back();
         for (std::size_t p = 0; p < static_cast<std::size_t>(width * height); ++p) {
-            double value = state.sums[stride * p] / static_cast<double>(state.samples);
+            double value = 0.0;
+            if (!state.cameraSums.empty())
+                value += state.cameraSums[3 * p] / static_cast<double>(state.samples);
             if (!state.splatSums.empty())
                 value += state.splatSums[3 * p] / static_cast<double>(state.lightPaths);
             map.push_back(value);

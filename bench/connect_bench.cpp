@@ -5,6 +5,7 @@
 #include "lens/connect_survey.h"
 #include "lens/fit_cache.h"
 #include "lens/fit_domain.h"
+#include "lens/fitted_map.h"
 
 namespace etendue {
 namespace {
@@ -19,6 +20,8 @@ void printRow(const Prescription& prescription, FitForm form, ConnectMethod meth
     const FitDomain domain = fitDomain(prescription, {});
     const LensFit fit = cachedFit(prescription, domain, settings, fitCacheDirectory());
     const PolynomialLens lens(prescription, fit, Aperture(domain.apertureRadiusMm));
+    const FitRays anew = drawFitRays(lensOf(prescription, domain), domain, 4000, 53);
+    const double inSight = shareInSight(fit.start, FittedMap(prescription, fit), anew.rays);
     int rays = 0, lost = 0, most = 0;
     double iterations = 0.0;
     std::printf("| %s%s%s | %s | %s |", prescription.name.c_str(),
@@ -36,7 +39,9 @@ void printRow(const Prescription& prescription, FitForm form, ConnectMethod meth
         most = std::max(most, ring.mostIterations);
         iterations += ring.meanIterations * ring.rays;
     }
-    std::printf(" %d of %d | %.1f, %d |\n", lost, rays, iterations / std::max(1, rays), most);
+    std::printf(" %d of %d | %.1f, %d | %.0f %% of %zu |\n", lost, rays,
+                iterations / std::max(1, rays), most, 100.0 * inSight,
+                fit.start.sensor.groups[0].terms.size());
 }
 
 void run(int count, char** files) {
@@ -45,7 +50,8 @@ void run(int count, char** files) {
         "infinity) that connect loses or puts elsewhere, per cent, by rings of the sensor and the\n"
         "angle that they see; targets 0.1, 0.3, 1, 10 m and 1000 km off.\n\n"
         "| lens | form | search | ring 1 | ring 2 | ring 3 | ring 4 | ring 5 | ring 6 | all "
-        "| steps: mean, most |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+        "| steps: mean, most | targets in sight of the first guess, its terms |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (int i = 0; i < count; ++i)
         for (const Prescription& prescription : loadPrescriptions(files[i]))
             for (const FitForm form : {FitForm::twoPoint, FitForm::sensorState})

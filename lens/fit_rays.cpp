@@ -60,13 +60,6 @@ Traced traceQuery(const TracedLens& lens, const PupilSphere& sphere, const FitQu
 
 }  // namespace
 
-bool FitDomain::contains(SensorPoint sensor, AperturePoint aperture, double wavelengthNm) const {
-    return std::abs(sensor.mm.x()) <= sensorHalfSizeMm.x() &&
-           std::abs(sensor.mm.y()) <= sensorHalfSizeMm.y() && sensor.mm.norm() <= imageRadiusMm &&
-           aperture.mm.norm() <= apertureRadiusMm && wavelengthNm >= shortestWavelengthNm &&
-           wavelengthNm <= longestWavelengthNm;
-}
-
 TracedLens lensOf(const Prescription& prescription, const FitDomain& domain) {
     return TracedLens(prescription, Aperture(domain.apertureRadiusMm), domain.sensorDistanceMm);
 }

@@ -20,7 +20,12 @@ struct FitDomain {
 
     bool operator==(const FitDomain&) const = default;
     /// Its rims included.
-    bool contains(SensorPoint sensor, AperturePoint aperture, double wavelengthNm) const;
+    bool contains(SensorPoint sensor, AperturePoint aperture, double wavelengthNm) const {
+        return std::abs(sensor.mm.x()) <= sensorHalfSizeMm.x() &&
+               std::abs(sensor.mm.y()) <= sensorHalfSizeMm.y() &&
+               sensor.mm.norm() <= imageRadiusMm && aperture.mm.norm() <= apertureRadiusMm &&
+               wavelengthNm >= shortestWavelengthNm && wavelengthNm <= longestWavelengthNm;
+    }
 };
 
 /// The lens with its stop and sensor as the domain has them.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lens/fitted_map.h"
 #include "lens/polynomial.h"
 #include "lens/sparse_fit.h"
 
@@ -141,7 +142,8 @@ LensFit fitLens(const Prescription& prescription, const FitDomain& domain,
                       candidateTerms(settings.basis, settings.degree, apertureOutputs), scaling,
                       inputs, apertures, apertureTolerances(apertures), optionsFor(half, end));
     }
-    fit.start = fitConnectStart(training.rays, lens.system(), !isAnamorphic(prescription));
+    fit.start = fitConnectStart(training.rays, FittedMap(prescription, fit), lens.system(),
+                                !isAnamorphic(prescription));
     if (domain.sensorTravelMm > 0.0)
         fit.slope = fitSensorSlope(training.rays, !isAnamorphic(prescription));
     tell(end, "fitting the rims");

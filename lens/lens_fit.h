@@ -47,7 +47,7 @@ struct FitErrors {
 };
 
 /// To be raised whenever the same prescription, domain and settings come to be fitted otherwise.
-constexpr int fitAlgorithmVersion = 5;
+constexpr int fitAlgorithmVersion = 6;
 
 /// Of the polynomials of a LensFit, as far as it has them.
 constexpr OutputCount exitOutputs{2, 1}, apertureOutputs{2, 0};

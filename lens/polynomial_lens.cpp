@@ -14,6 +14,7 @@ PolynomialLens::PolynomialLens(const Prescription& prescription, const LensFit& 
       aperture_(aperture),
       clip_(fit.clip.squares),
       clipCount_(fit.clip.count()),
+      clear_(fit.clip, clip_, fit.domain),
       pupil_(OpticalSystem(prescription)),
       start_(fit.start.sensor),
       connectStart_(fit.start) {
@@ -32,16 +33,25 @@ std::optional<ExitRay> PolynomialLens::trace(SensorPoint sensor, AperturePoint a
     // Before any polynomial is asked, which outside the domain could answer anything.
     if (!domain_.contains(sensor, aperture, wavelengthNm)) return {};
     const std::optional<ExitRay> ray = map_.exitRay(sensor, aperture, wavelengthNm);
-    if (!ray || statusOf(sensor, *ray, aperture, wavelengthNm) != ConnectStatus::found) return {};
+    if (!ray || statusOf(sensor, *ray, aperture, wavelengthNm) != ConnectStatus::found ||
+        !passesRims(sensor, aperture, wavelengthNm))
+        return {};
     return ray;
 }
 
 ConnectStatus PolynomialLens::statusOf(SensorPoint sensor, const ExitRay& ray,
                                        AperturePoint aperture, double wavelengthNm) const {
     if (!domain_.contains(sensor, aperture, wavelengthNm)) return ConnectStatus::outOfField;
-    if (!(turning(ray) > 0.0)) return ConnectStatus::blocked;
+    return turning(ray) > 0.0 ? ConnectStatus::found : ConnectStatus::blocked;
+}
+
+double PolynomialLens::highestSquare(SensorPoint sensor, AperturePoint aperture,
+                                     double wavelengthNm) const {
     const PolynomialValues<double> squares = clip_.values({sensor.mm, aperture.mm, wavelengthNm});
-    return passesRims({squares.data(), clipCount_}) ? ConnectStatus::found : ConnectStatus::blocked;
+    double highest = 0.0;
+    for (std::size_t i = 0; i < clipCount_; ++i)
+        highest = squares[i] <= highest ? highest : squares[i];  // one that is NaN stays
+    return highest;
 }
 
 AperturePoint PolynomialLens::sampleAperture(Eigen::Vector2d u) const {
@@ -61,29 +71,39 @@ Connection PolynomialLens::solve(const Eigen::Vector3d& targetMm, AperturePoint 
                                            : solveByTwoSteps(targetMm, aperture, wavelengthNm);
 }
 
-std::optional<Eigen::Vector2d> PolynomialLens::firstGuess(const TargetSight& sight,
-                                                          AperturePoint aperture,
-                                                          double wavelengthNm) const {
+PolynomialLens::Guess PolynomialLens::firstGuess(const TargetSight& sight, AperturePoint aperture,
+                                                 double wavelengthNm) const {
+    const auto none = [](ConnectStatus why) { return Guess{why, {0.0, 0.0}, false}; };
     const bool isTrusted = sight.nearness <= connectStart_.trustedNearness;
-    if (isTrusted && !(sight.field.norm() <= connectStart_.widestField + sight.nearness)) return {};
+    if (isTrusted && !(sight.field.norm() <= connectStart_.widestField + sight.nearness))
+        return none(ConnectStatus::outOfField);
     const Eigen::Vector2d guess =
         sensorGuess(connectStart_, sight, start_.values({sight.field, aperture.mm, wavelengthNm}));
     // Searching for a point that sees the target where none does costs ten times what finding one
     // does.
     const bool isOutside =
         !(guess.cwiseAbs().array() <= farthestGuess * domain_.sensorHalfSizeMm.array()).all();
-    if (isOutside && isTrusted) return {};
-    if (!guess.allFinite()) return Eigen::Vector2d(0.0, 0.0);
-    return guess.cwiseMax(-domain_.sensorHalfSizeMm).cwiseMin(domain_.sensorHalfSizeMm);
+    if (isOutside && isTrusted) return none(ConnectStatus::outOfField);
+    if (!guess.allFinite()) return none(ConnectStatus::found);
+    const Eigen::Vector2d inside =
+        guess.cwiseMax(-domain_.sensorHalfSizeMm).cwiseMin(domain_.sensorHalfSizeMm);
+    if (clear_.contains({inside}, aperture)) return {ConnectStatus::found, inside, true};
+    // Of targets that are not near, guesses err by less than squared heights change by the margin.
+    constexpr double farNearness = 0.25, margin = 0.1;
+    if (!isTrusted || isOutside || sight.nearness > farNearness)
+        return {ConnectStatus::found, inside, false};
+    const double highest = highestSquare({inside}, aperture, wavelengthNm);
+    if (!(highest <= 1.0 + margin)) return none(ConnectStatus::blocked);
+    return {ConnectStatus::found, inside, highest <= 1.0 - margin};
 }
 
 Connection PolynomialLens::solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture,
                                          double wavelengthNm) const {
-    const auto guess = firstGuess(pupil_.sight(target, aperture), aperture, wavelengthNm);
-    if (!guess) return {ConnectStatus::outOfField, {}, 0};
-    Connection connection;
+    const Guess guess = firstGuess(pupil_.sight(target, aperture), aperture, wavelengthNm);
+    Connection connection{guess.status, {}, 0};
+    if (guess.status != ConnectStatus::found) return connection;
     const std::optional<Aimed> end =
-        aim(target, aperture, wavelengthNm, *guess, fineToleranceRadians, connection);
+        aim(target, aperture, wavelengthNm, guess, fineToleranceRadians, connection);
     if (connection.status == ConnectStatus::found) connection.sensor = SensorPoint{end->sensor};
     return connection;
 }
@@ -98,20 +118,20 @@ std::optional<Sighting> PolynomialLens::see(const Eigen::Vector3d& targetMm, Ape
 void PolynomialLens::seeEach(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                              std::span<const double> wavelengthsNm,
                              std::span<std::optional<Sighting>> sightings) const {
-    // Where a guess is as near, as the first mostly is in a lens stopped down, one evaluation does.
-    constexpr double toleranceRadians = 2e-5;
     const TargetSight sight = pupil_.sight(targetMm, aperture);
     Eigen::Vector2d missedBy(0.0, 0.0);  // the first guess at the wavelength before
     for (std::size_t i = 0; i < wavelengthsNm.size(); ++i) {
         sightings[i].reset();
         if (!canSee(targetMm, aperture, wavelengthsNm[i])) continue;
-        const auto guess = firstGuess(sight, aperture, wavelengthsNm[i]);
-        if (!guess) continue;
+        Guess guess = firstGuess(sight, aperture, wavelengthsNm[i]);
+        if (guess.status != ConnectStatus::found) continue;
+        const Eigen::Vector2d first = guess.sensorMm;
+        guess.sensorMm += missedBy;
         Connection connection;
-        const std::optional<Aimed> end = aim(targetMm, aperture, wavelengthsNm[i],
-                                             *guess + missedBy, toleranceRadians, connection);
+        const std::optional<Aimed> end =
+            aim(targetMm, aperture, wavelengthsNm[i], guess, sightToleranceRadians, connection);
         if (!end) continue;
-        missedBy = end->sensor - *guess;
+        missedBy = end->sensor - first;
         if (connection.status == ConnectStatus::found)
             sightings[i] = Sighting{{end->sensor}, end->ray};
     }
@@ -124,7 +144,7 @@ bool PolynomialLens::canSee(const Eigen::Vector3d& targetMm, AperturePoint apert
 }
 
 std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, AperturePoint aperture,
-                                         double wavelengthNm, const Eigen::Vector2d& guess,
+                                         double wavelengthNm, const Guess& guess,
                                          double toleranceRadians, Connection& connection) const {
     const auto exit = [&](const Eigen::Vector2d& s,
                           double apertureShare) -> std::optional<ExitRay> {
@@ -134,11 +154,18 @@ std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, Aperture
         return map_.exitRay({s}, {apertureShare * aperture.mm}, wavelengthNm);
     };
     TargetSolver solver(exit, focalLengthMm_, toleranceRadians);
-    std::optional<Aimed> end = solver.newton(target, guess);
+    std::optional<Aimed> end = solver.newton(target, guess.sensorMm);
     if (!end) end = solver.follow(target);
     connection.iterations = solver.steps();
     connection.status =
         end ? statusOf({end->sensor}, end->ray, aperture, wavelengthNm) : ConnectStatus::unsolved;
+    if (connection.status != ConnectStatus::found) return end;
+    // In half sizes of the sensor.
+    constexpr double near = 0.01;
+    const Eigen::Array2d moved = (end->sensor - guess.sensorMm).cwiseAbs().array();
+    const bool isNear = (moved <= near * domain_.sensorHalfSizeMm.array()).all();
+    if (!(guess.passesRims && isNear) && !passesRims({end->sensor}, aperture, wavelengthNm))
+        connection.status = ConnectStatus::blocked;
     return end;
 }
 

@@ -4,6 +4,7 @@
 // Lens space: the origin at the vertex of the first surface (optical_system.h).
 #pragma once
 
+#include "lens/clear_core.h"
 #include "lens/connection.h"
 #include "lens/fitted_map.h"
 #include "lens/polynomial_products.h"
@@ -26,7 +27,7 @@ public:
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                        double wavelengthNm) const override;
     /// As fine as connect() where the ray goes; its derivatives and throughput are those of a ray
-    /// that leaves within 2e-5 rad of it, a tenth of what fits err by.
+    /// that leaves within sightToleranceRadians of it. First guesses mostly do: one evaluation.
     std::optional<Sighting> see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                 double wavelengthNm) const override;
     /// From the second wavelength on a first guess is moved by what the one before missed by, which
@@ -44,16 +45,28 @@ public:
     const FitDomain& domain() const { return domain_; }
 
 private:
-    std::optional<Eigen::Vector2d> firstGuess(const TargetSight& sight, AperturePoint aperture,
-                                              double wavelengthNm) const;
+    struct Guess {
+        /// Unless this is `found`, no sensor point sees the target, and a search would fail slowly.
+        ConnectStatus status;
+        Eigen::Vector2d sensorMm;
+        bool passesRims;  // so clearly that a ray from near it does, too; false says nothing
+    };
+    Guess firstGuess(const TargetSight& sight, AperturePoint aperture, double wavelengthNm) const;
+    /// The largest of the clip polynomials: above 1 a rim blocks the ray.
+    double highestSquare(SensorPoint sensor, AperturePoint aperture, double wavelengthNm) const;
+    bool passesRims(SensorPoint sensor, AperturePoint aperture, double wavelengthNm) const {
+        return clear_.contains(sensor, aperture) ||
+               highestSquare(sensor, aperture, wavelengthNm) <= 1.0;
+    }
+    /// Rims apart.
     ConnectStatus statusOf(SensorPoint sensor, const ExitRay& ray, AperturePoint aperture,
                            double wavelengthNm) const;
     bool canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm) const;
-    /// The end of our search from the sensor point `guess`, and how it went; the connection's own
-    /// sensor point is not set.
+    /// The end of our search from a guess, and how it went; the connection's own sensor point is
+    /// not set.
     std::optional<Aimed> aim(const Eigen::Vector3d& target, AperturePoint aperture,
-                             double wavelengthNm, const Eigen::Vector2d& guess,
-                             double toleranceRadians, Connection& connection) const;
+                             double wavelengthNm, const Guess& guess, double toleranceRadians,
+                             Connection& connection) const;
     Connection solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture,
                              double wavelengthNm) const;
     Connection solveByTwoSteps(const Eigen::Vector3d& target, AperturePoint aperture,
@@ -64,6 +77,7 @@ private:
     Aperture aperture_;
     ValueEvaluator clip_;
     std::size_t clipCount_;
+    ClearCore clear_;
     EntrancePupil pupil_;
     ValueEvaluator start_;  // connectStart_.sensor
     ConnectStart connectStart_;

@@ -11,6 +11,8 @@
 
 namespace etendue {
 
+class FittedMap;
+
 /// A direction as a point in the plane, by Lambert's equal-area projection about +z: at the radius
 /// 2 sin(θ/2), smooth up to 180° off the axis.
 inline Eigen::Vector2d fieldCoordinates(const Eigen::Vector3d& direction) {
@@ -65,9 +67,15 @@ Eigen::Vector2d sensorGuess(const ConnectStart& start, const TargetSight& sight,
     return {at[0] + bent * at[2], at[1] + bent * at[3]};
 }
 
-/// `isAxial`: whether the lens turns about its axis unchanged.
-ConnectStart fitConnectStart(std::span<const FitRay> training, const OpticalSystem& system,
-                             bool isAxial);
+/// A start for searches on `map`, whose rays leave a little beside the traced ones. It has as few
+/// terms as put nearly all guesses for far targets within sightToleranceRadians, where that is
+/// possible. `isAxial`: whether the lens turns about its axis unchanged.
+ConnectStart fitConnectStart(std::span<const FitRay> training, const FittedMap& map,
+                             const OpticalSystem& system, bool isAxial);
+
+/// Of far targets on the rays those whose guess meets them within sightToleranceRadians, so that
+/// one evaluation of the map is all it takes to see them.
+double shareInSight(const ConnectStart& start, const FittedMap& map, std::span<const FitRay> rays);
 
 /// (s, a, λ) → slope at the sensor.
 SparsePolynomial fitSensorSlope(std::span<const FitRay> training, bool isAxial);

@@ -129,9 +129,10 @@ InputScaling scalingFor(PolynomialBasis basis, std::span<const PolynomialInput> 
         products += input.p.cwiseProduct(input.s);
         squares += input.s.cwiseAbs2();
         longestS = std::max(longestS, input.s.norm());
-        const double inverse = 1e6 / (input.wavelengthNm * input.wavelengthNm);
-        lowest = std::min(lowest, inverse);
-        highest = std::max(highest, inverse);
+        // As scaledInput() has it: one wavelength alone is then w = 0 exactly, and no term has it.
+        const double perMicrometre = 1e3 / input.wavelengthNm;
+        lowest = std::min(lowest, perMicrometre * perMicrometre);
+        highest = std::max(highest, perMicrometre * perMicrometre);
     }
     if (basis == PolynomialBasis::axial) {
         products.setConstant(products.sum());

@@ -61,6 +61,9 @@ inline Aimed carried(const Eigen::Vector2d& sensor, const ExitRay& ray,
 /// Where a search may end: its last step, unchecked, leaves the square of this, times up to 2 on
 /// the lenses there are: 5e-12.
 constexpr double fineToleranceRadians = 1.5e-6;
+/// Where one may end that asks what is seen, not just from where: the derivatives and the
+/// throughput are then those of a ray as near as this, a tenth of what fits err by.
+constexpr double sightToleranceRadians = 2e-5;
 
 /// Newton's method on the direction in which rays leave. `Exit`, called with a sensor point and the
 /// share of the aperture point to go through, gives an exit ray, rims ignored, or nothing.

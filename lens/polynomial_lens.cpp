@@ -1,5 +1,7 @@
 #include "lens/polynomial_lens.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "lens/target_solver.h"
@@ -49,8 +51,10 @@ double PolynomialLens::highestSquare(SensorPoint sensor, AperturePoint aperture,
                                      double wavelengthNm) const {
     const PolynomialValues<double> squares = clip_.values({sensor.mm, aperture.mm, wavelengthNm});
     double highest = 0.0;
-    for (std::size_t i = 0; i < clipCount_; ++i)
-        highest = squares[i] <= highest ? highest : squares[i];  // one that is NaN stays
+    for (std::size_t i = 0; i < clipCount_; ++i) {
+        if (std::isnan(squares[i])) return squares[i];
+        highest = std::max(highest, squares[i]);
+    }
     return highest;
 }
 

@@ -52,7 +52,8 @@ private:
         bool passesRims;  // so clearly that a ray from near it does, too; false says nothing
     };
     Guess firstGuess(const TargetSight& sight, AperturePoint aperture, double wavelengthNm) const;
-    /// The largest of the clip polynomials: above 1 a rim blocks the ray.
+    /// The largest of the clip polynomials, or NaN if one is: unless it is at most 1 a rim blocks
+    /// the ray.
     double highestSquare(SensorPoint sensor, AperturePoint aperture, double wavelengthNm) const;
     bool passesRims(SensorPoint sensor, AperturePoint aperture, double wavelengthNm) const {
         return clear_.contains(sensor, aperture) ||

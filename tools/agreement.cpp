@@ -18,6 +18,9 @@ namespace {
 constexpr double pilotShare = 0.15;
 constexpr std::uint32_t mostPilotSamples = 1u << 16;
 constexpr double mostSamples = 1 << 24;
+/// Half an interval's width: below half the bound, so that chance leaves room for it beside the
+/// bias.
+constexpr double intervalPerBound = 0.45;
 
 /// For a sample of a pixel on one core, about: `AgreementSettings::reckonsTime`. Through a lens of
 /// glass it is two to five times as much.
@@ -86,8 +89,7 @@ private:
         const auto a = costOf(tested, mean);
         const auto b = a ? costOf(reference, mean) : std::nullopt;
         if (!b) return {};
-        // Below half the bound, so that chance leaves room for the interval beside the bias.
-        const double halfWidth = 0.45 * settings_.bound * mean;
+        const double halfWidth = intervalPerBound * settings_.bound * mean;
         const double left = settings_.reckonsTime ? (1.0 - pilotShare) * settings_.seconds
                                                   : settings_.seconds - secondsSince(start_);
         return planSamples(*a, *b, settings_.seeds, halfWidth, left);
@@ -258,6 +260,11 @@ SamplePlan planSamples(PictureCost tested, PictureCost reference, int seeds, dou
         return std::max(cost.samples, static_cast<std::uint32_t>(std::min(n, mostSamples)));
     };
     return {samples(tested), samples(reference)};
+}
+
+double secondsToTell(const Agreement& agreement, double bound) {
+    const double ratio = agreement.comparison.relativeBiasHalfWidth / (intervalPerBound * bound);
+    return agreement.seconds * ratio * ratio;
 }
 
 Verdict verdictOf(const Judgement& judgement, double bound, bool isBlack, bool hasBadSamples) {

@@ -100,6 +100,10 @@ struct SamplePlan {
 SamplePlan planSamples(PictureCost tested, PictureCost reference, int seeds, double halfWidth,
                        double seconds);
 
+/// About how long the same comparison would take to tell whether the means agree within `bound`,
+/// from the interval that it has now: its square is in proportion to one over the time.
+double secondsToTell(const Agreement& agreement, double bound);
+
 Verdict verdictOf(const Judgement& judgement, double bound, bool isBlack, bool hasBadSamples);
 
 }  // namespace etendue

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "statistics/statistics.h"
+#include "tools/progress.h"
 #include "tools/text_table.h"
 
 namespace etendue {
@@ -19,11 +21,18 @@ std::string wordFor(const AgreementRow& row) {
     return row.failure.empty() ? "not reached" : "not done";
 }
 
-std::vector<std::string> tableRow(const AgreementRow& row) {
+/// Empty where it is known, or no time would tell.
+std::string timeToTell(const Agreement& agreement, double bound) {
+    const double seconds = secondsToTell(agreement, bound);
+    if (agreement.verdict != Verdict::tooNoisy || !std::isfinite(seconds)) return "";
+    return formatDuration(seconds);
+}
+
+std::vector<std::string> tableRow(const AgreementRow& row, double bound) {
     std::vector<std::string> cells{row.scene, row.camera, row.estimator, row.reference};
     if (!row.result) {
         const std::string word = wordFor(row);
-        cells.insert(cells.end(), {"", "", "", word, "", "", ""});
+        cells.insert(cells.end(), {"", "", "", word, "", "", "", ""});
         return cells;
     }
     const Agreement& r = *row.result;
@@ -34,9 +43,9 @@ std::vector<std::string> tableRow(const AgreementRow& row) {
         cells.insert(cells.end(), {fmt::format("{:+.3f}", perCent * c.relativeBias),
                                    fmt::format("{:.3f}", perCent * c.relativeBiasHalfWidth),
                                    fmt::format("{:.2g}", c.smallestP)});
-    cells.insert(cells.end(),
-                 {nameOf(r.verdict), fmt::format("{}", r.tested.samples),
-                  fmt::format("{}", r.reference.samples), fmt::format("{:.1f}", r.seconds)});
+    cells.insert(cells.end(), {nameOf(r.verdict), fmt::format("{}", r.tested.samples),
+                               fmt::format("{}", r.reference.samples),
+                               fmt::format("{:.1f}", r.seconds), timeToTell(r, bound)});
     return cells;
 }
 
@@ -80,7 +89,7 @@ Json jsonOf(const AgreementSide& side) {
                          {"refused_rays", side.bad.refusedRays}});
 }
 
-Json jsonOf(const AgreementRow& row) {
+Json jsonOf(const AgreementRow& row, double bound) {
     Json object = Json::object({{"scene", row.scene}, {"camera", row.camera}});
     if (!row.result) {
         object.add("estimator", row.estimator);
@@ -99,6 +108,7 @@ Json jsonOf(const AgreementRow& row) {
     object.add("smallest_p", r.comparison.smallestP);
     object.add("level", r.comparison.level);
     object.add("seconds", r.seconds);
+    if (r.verdict == Verdict::tooNoisy) object.add("seconds_to_tell", secondsToTell(r, bound));
     return object;
 }
 
@@ -122,11 +132,11 @@ std::string agreementText(const std::vector<AgreementRow>& rows,
                           const AgreementSettings& settings) {
     std::vector<std::vector<std::string>> table{{"scene", "camera", "tested", "against", "bias %",
                                                  "± %", "smallest p", "verdict", "samples",
-                                                 "against", "seconds"}};
+                                                 "against", "seconds", "would tell in"}};
     std::string leftOut, inDoubt, defects, failures;
     double level = 0.0;
     for (const AgreementRow& row : rows) {
-        table.push_back(tableRow(row));
+        table.push_back(tableRow(row, settings.bound));
         if (!row.failure.empty()) failures += fmt::format("  {}: {}\n", titleOf(row), row.failure);
         if (!row.result) continue;
         level = row.result->comparison.level;
@@ -137,7 +147,7 @@ std::string agreementText(const std::vector<AgreementRow>& rows,
             appendDefects(row, *side, defects);
         }
     }
-    std::string text = alignedTable(table, "llllrrrlrrr");
+    std::string text = alignedTable(table, "llllrrrlrrrr");
     appendSection(
         text,
         "Left out of a comparison, since one of the two cannot make it or meets it only by chance:",
@@ -159,7 +169,7 @@ std::string agreementText(const std::vector<AgreementRow>& rows,
 
 Json agreementJson(const std::vector<AgreementRow>& rows, const AgreementSettings& settings) {
     Json comparisons = Json::array();
-    for (const AgreementRow& row : rows) comparisons.add(jsonOf(row));
+    for (const AgreementRow& row : rows) comparisons.add(jsonOf(row, settings.bound));
     return Json::object({{"seeds", settings.seeds},
                          {"bound_percent", perCent * settings.bound},
                          {"comparisons", comparisons}});

@@ -9,6 +9,7 @@
 #include "tests/tools/command_outcome.h"
 #include "tests/tools/every_material_scene.h"
 #include "tools/agreement_report.h"
+#include "tools/progress.h"
 
 using namespace etendue;
 
@@ -251,4 +252,20 @@ TEST_CASE("Agreement: the exit code is that of the worst row") {
     for (const char* word :
          {"agree", "DIFFER", "not done", "not reached", "s, c, lt against pt: s.toml: bad"})
         CHECK(contains(text, word));
+}
+
+TEST_CASE("Agreement: what is too noisy to tell says how long it would take") {
+    Agreement noisy;
+    noisy.verdict = Verdict::tooNoisy;
+    noisy.seconds = 8.0;
+    noisy.comparison.relativeBiasHalfWidth = 0.01;
+    // Eleven times as wide as it may be, which takes 123 times as long.
+    const double expected = 8.0 / (0.09 * 0.09);
+    CHECK(secondsToTell(noisy, 0.002) == doctest::Approx(expected));
+    AgreementSettings settings;
+    settings.bound = 0.002;
+    const auto textOf = [&] { return agreementText({{"s", "c", "lt", "pt", noisy}}, settings); };
+    CHECK(contains(textOf(), formatDuration(expected)));
+    noisy.verdict = Verdict::agree;
+    CHECK_FALSE(contains(textOf(), formatDuration(expected)));
 }

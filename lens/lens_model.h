@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -73,6 +74,8 @@ public:
     virtual AperturePoint sampleAperture(Eigen::Vector2d u) const = 0;
     /// mm². A pinhole's aperture is a point; its area counts as 1.
     virtual double apertureAreaMm2() const = 0;
+    /// No ray leaves farther from the origin of lens space; infinite where that is not known.
+    virtual double reachMm() const { return std::numeric_limits<double>::infinity(); }
 };
 
 /// Perspective through a point, the sensor at `sensorDistanceMm` behind it.

@@ -28,6 +28,12 @@ struct OpticalSystem {
     Aperture aperture;         // of the stop
 };
 
+/// LensModel::reachMm: rays leave from the first surface, which is at most a hemisphere, or from
+/// the plane at its vertex, where they lie a little farther out than on the surface.
+inline double reachMm(const OpticalSystem& system) {
+    return 2.0 * system.surfaces.front().semiApertureMm;
+}
+
 /// The indices of `media` at one wavelength, in its order.
 std::vector<double> refractiveIndices(const OpticalSystem& system, double wavelengthNm);
 

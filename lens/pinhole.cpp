@@ -26,6 +26,7 @@ public:
 
     AperturePoint sampleAperture(Eigen::Vector2d /*u*/) const override { return {{0.0, 0.0}}; }
     double apertureAreaMm2() const override { return 1.0; }
+    double reachMm() const override { return 0.0; }
 
 private:
     IdealLens map_;

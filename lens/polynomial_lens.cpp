@@ -25,7 +25,9 @@ PolynomialLens::PolynomialLens(const Prescription& prescription, const LensFit& 
     constexpr double rounding = 1.0 + 1e-12;
     if (aperture.radiusMm() > fit.domain.apertureRadiusMm * rounding)
         throw std::invalid_argument("polynomial lens: the aperture is wider than the fit's domain");
-    const ParaxialData data = paraxialData(OpticalSystem(prescription));
+    const OpticalSystem system(prescription);
+    const ParaxialData data = paraxialData(system);
+    reachMm_ = etendue::reachMm(system);
     focalLengthMm_ = 0.5 * std::abs(data.x.focalLengthMm + data.y.focalLengthMm);
 }
 

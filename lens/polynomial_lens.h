@@ -37,6 +37,7 @@ public:
                  std::span<std::optional<Sighting>> sightings) const override;
     AperturePoint sampleAperture(Eigen::Vector2d u) const override;
     double apertureAreaMm2() const override { return aperture_.areaMm2(); }
+    double reachMm() const override { return reachMm_; }
 
     /// connect(), and how it went.
     Connection solve(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm,
@@ -82,7 +83,7 @@ private:
     EntrancePupil pupil_;
     ValueEvaluator start_;  // connectStart_.sensor
     ConnectStart connectStart_;
-    double focalLengthMm_;
+    double focalLengthMm_, reachMm_;
 };
 
 }  // namespace etendue

@@ -24,6 +24,7 @@ public:
         return lens_.sampleAperture(u);
     }
     double apertureAreaMm2() const override { return lens_.apertureAreaMm2(); }
+    double reachMm() const override { return lens_.reachMm(); }
 
 private:
     /// The same ray on the moved sensor.

@@ -35,11 +35,13 @@ public:
     double apertureAreaMm2() const override {
         return std::numbers::pi * apertureRadiusMm_ * apertureRadiusMm_;
     }
+    double reachMm() const override { return apertureRadiusMm_ * rim; }
 
 private:
+    // So wide that what sampleAperture draws on the rim passes in spite of rounding.
+    static constexpr double rim = 1.0 + 16.0 * std::numeric_limits<double>::epsilon();
+
     bool isOpen(AperturePoint aperture) const {
-        // So wide that what sampleAperture draws on the rim passes in spite of rounding.
-        constexpr double rim = 1.0 + 16.0 * std::numeric_limits<double>::epsilon();
         return aperture.mm.norm() <= apertureRadiusMm_ * rim;
     }
 

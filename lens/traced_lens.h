@@ -62,6 +62,7 @@ public:
                      ConnectMethod method = ConnectMethod::newton) const;
     AperturePoint sampleAperture(Eigen::Vector2d u) const override;
     double apertureAreaMm2() const override { return system_.aperture.areaMm2(); }
+    double reachMm() const override { return etendue::reachMm(system_); }
 
     /// Empty beyond 350–1100 nm.
     std::optional<MonochromaticLens> at(double wavelengthNm) const;

@@ -59,6 +59,8 @@ public:
 
     /// True when there is no continuous part, so that no connection can be made to this surface.
     virtual bool isDirac() const = 0;
+    /// Whether it scatters to the other side; else wo and wi lie on the same one.
+    virtual bool isTransmitting() const = 0;
 
     /// Directional-hemispherical reflectance, roughly, for the albedo image.
     virtual Spectrum albedo(const BsdfContext&) const = 0;

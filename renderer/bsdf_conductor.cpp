@@ -40,6 +40,7 @@ public:
     }
 
     bool isDirac() const override { return true; }
+    bool isTransmitting() const override { return false; }
     Spectrum albedo(const BsdfContext&) const override { return albedo_; }
 
 private:
@@ -90,6 +91,7 @@ public:
     }
 
     bool isDirac() const override { return false; }
+    bool isTransmitting() const override { return false; }
     Spectrum albedo(const BsdfContext&) const override { return albedo_; }
 
 private:

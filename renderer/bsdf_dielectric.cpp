@@ -75,6 +75,7 @@ public:
     }
 
     bool isDirac() const override { return true; }
+    bool isTransmitting() const override { return true; }
     Spectrum albedo(const BsdfContext&) const override { return albedo_; }
 
 private:
@@ -143,6 +144,7 @@ public:
     }
 
     bool isDirac() const override { return false; }
+    bool isTransmitting() const override { return true; }
     Spectrum albedo(const BsdfContext&) const override { return albedo_; }
 
 private:

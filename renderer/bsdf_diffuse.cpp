@@ -24,6 +24,7 @@ public:
     }
 
     bool isDirac() const override { return false; }
+    bool isTransmitting() const override { return false; }
     Spectrum albedo(const BsdfContext& context) const override {
         return context.wavelengths.lanesOf(reflectance_.color(context.uv));
     }

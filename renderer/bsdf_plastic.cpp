@@ -80,6 +80,7 @@ public:
     }
 
     bool isDirac() const override { return false; }
+    bool isTransmitting() const override { return false; }
     Spectrum albedo(const BsdfContext& context) const override {
         return Spectrum(1.0f - averageTransmittance_) +
                base_.albedo(context) * averageTransmittance_;
@@ -136,6 +137,7 @@ public:
     }
 
     bool isDirac() const override { return false; }
+    bool isTransmitting() const override { return false; }
     Spectrum albedo(const BsdfContext& context) const override {
         return Spectrum(1.0f - transmittance_.average()) +
                base_.albedo(context) * transmittance_.average();

@@ -231,6 +231,12 @@ CameraRay Camera::worldRay(const ExitRay& exit) const {
     };
 }
 
+bool Camera::isBehind(Vec3 point, Vec3 normal) const {
+    const Vec3d toLens = settings_.worldFromLens.translation - toDouble(point);
+    const double rounding = 1e-4 * length(toLens);  // of floats, ample
+    return dot(toLens, toDouble(normal)) < -(lens_->reachMm() * metresPerMm + rounding);
+}
+
 Vec3 Camera::position() const { return toFloat(settings_.worldFromLens.translation); }
 Vec3 Camera::forward() const { return toFloat(settings_.worldFromLens.z); }
 

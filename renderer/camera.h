@@ -86,6 +86,10 @@ public:
     CameraConnections connectEachToInfinity(Vec3 direction, Vec2 apertureUniform,
                                             const Wavelengths& wavelengths) const;
 
+    /// Whether all rays leave the lens behind the plane through `point`, which faces `normal`
+    /// (unit).
+    bool isBehind(Vec3 point, Vec3 normal) const;
+
     const CameraSettings& settings() const { return settings_; }
     Vec3 position() const;  // of the lens origin, world
     Vec3 forward() const;

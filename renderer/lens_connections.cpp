@@ -23,6 +23,7 @@ public:
             if (!sample_.wants(s, 1)) continue;
             const PathVertex& y = light_.vertices[s - 1];
             if (y.kind == PathVertex::Kind::surface && !canConnect(y)) continue;
+            if (s >= 2 && isTurnedAway(y)) continue;
             const Camera& camera = view_.camera;
             const bool isInfinite = y.kind == PathVertex::Kind::infinite;
             if (partsColors(y)) {
@@ -42,6 +43,13 @@ public:
     }
 
 private:
+    /// Whether no light can be scattered to the lens, which may take long to be found.
+    bool isTurnedAway(const PathVertex& y) const {
+        if (y.point.material->bsdf->isTransmitting()) return false;
+        const Vec3 normal = y.point.geometricNormal;
+        return view_.camera.isBehind(y.point.position, dot(normal, y.wo) > 0.0f ? normal : -normal);
+    }
+
     /// Whether every wavelength lands in a place of its own: behind a dispersive lens.
     bool partsColors(const PathVertex& y) const { return isParted(view_) && !y.isHeroOnly; }
 

@@ -451,6 +451,7 @@ TEST_CASE("PolynomialLens: connect misses none of the rays of any lens" *
             if (isAnamorphic(table)) settings.basis = PolynomialBasis::twoPlane;
             const Fitted fitted(table, fitDomain(table, {}), settings);
             int rays = 0, lost = 0, elsewhere = 0;
+            double farthestMm = 0.0;
             for (std::uint64_t i = 0; rays < 10'000 && i < 100'000; ++i) {
                 FitQuery q = fitted.query(i);
                 const double stops[] = {1.0, 0.3, 0.05, 1e-4};
@@ -458,6 +459,7 @@ TEST_CASE("PolynomialLens: connect misses none of the rays of any lens" *
                 const auto ray = fitted.lens.trace(q.sensor, q.aperture, q.wavelengthNm);
                 if (!ray) continue;
                 ++rays;
+                farthestMm = std::max(farthestMm, ray->origin.norm());
                 const double distances[] = {5.0, 30.0, 100.0, 300.0, 1e3, 1e4, 1e9};
                 const Eigen::Vector3d target = ray->origin + distances[i % 7] * ray->direction;
                 const auto found = fitted.lens.connect(target, q.aperture, q.wavelengthNm);
@@ -468,6 +470,7 @@ TEST_CASE("PolynomialLens: connect misses none of the rays of any lens" *
             }
             CHECK(rays >= 10'000);
             CHECK(lost == 0);
+            CHECK(farthestMm <= fitted.lens.reachMm());
             CHECK(elsewhere == 0);
         }
 }

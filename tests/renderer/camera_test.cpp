@@ -7,7 +7,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "lens/traced_lens.h"
 #include "renderer/random.h"
+#include "renderer/sampling.h"
+#include "tests/lens/prescriptions.h"
 #include "tests/renderer/camera_fixtures.h"
 
 namespace etendue {
@@ -205,6 +208,32 @@ TEST_CASE("Camera: nothing connects behind the lens, in its plane, at its centre
               Vec3{0, 0, nan}, Vec3{infinity, 0, 1}, Vec3{0, 0, infinity}, Vec3{1, 0, 1e-44f},
               Vec3{1, 0, 1e-36f}, Vec3{3e38f, 3e38f, 3e38f}})
             CHECK_FALSE(camera.connect(point, {0.3f, 0.6f}, green).has_value());
+    }
+}
+
+TEST_CASE(
+    "Camera: of a lens behind a plane no ray is before it, and many that are behind are told") {
+    RandomStream random(8, 0, 0, RandomDomain::test);
+    for (const LensPointer& lens :
+         {LensPointer(makePinhole(50.0)), LensPointer(makeThinLens(50.0, 2000.0, 40.0)),
+          LensPointer(makeTracedLens(loadPrescription(lensFile("fisheye-220-6mm-f2.8.toml"))))}) {
+        const Camera camera(lens, settingsFor(720, 480, somewhere()));
+        int behind = 0, told = 0;
+        for (int i = 0; i < 20000; ++i) {
+            // From 3 cm to 10 m away.
+            const float distance = 0.03f * std::pow(333.0f, random.next());
+            const Vec3 point = camera.position() + sampleUnitSphere(random.next2()) * distance;
+            const Vec3 normal = sampleUnitSphere(random.next2());
+            const auto connection = camera.connect(point, random.next2(), green);
+            if (!connection) continue;
+            const bool isBehind = dot(-connection->ray.direction, normal) < 0.0f;
+            behind += isBehind;
+            if (!camera.isBehind(point, normal)) continue;
+            ++told;
+            CHECK(isBehind);
+        }
+        CHECK(behind > 1000);
+        CHECK(told > 0.3 * behind);
     }
 }
 

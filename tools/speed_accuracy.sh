@@ -1,5 +1,5 @@
 #!/bin/sh
-# Measures docs/speed-accuracy.md anew: three suites, an hour on two cores, and its tables. Interrupted, it
+# Measures docs/speed-accuracy.md anew: three suites, half an hour on two quiet cores, and its tables. Interrupted, it
 # goes on where it stopped; out/speed-accuracy removed, it begins anew.
 set -eu
 cd "$(dirname "$0")/.."

@@ -35,26 +35,27 @@ ClearCore::ClearCore(const ClipFit& clip, const ValueEvaluator& squares, const F
                         {polar(sensorRadiusMm, turn * i), polar(apertureRadiusMm, turn * j),
                          std::lerp(domain.shortestWavelengthNm, domain.longestWavelengthNm,
                                    share)});
-                    for (std::size_t k = 0; k < clip.count(); ++k)
-                        if (!(at[k] <= highest)) return false;
+                    if (!(highestSquare({at.data(), clip.count()}) <= highest)) return false;
                 }
         return true;
     };
-    for (std::size_t ring = 0; ring < rings; ++ring) {
-        const auto sensorRadiusMm = [&](double share) {
-            return std::sqrt((static_cast<double>(ring) + share) / ringsPerSquaredMm_);
-        };
-        const auto isRingClear = [&](double apertureRadiusMm) {
-            return isClear(sensorRadiusMm(0.0), apertureRadiusMm) &&
-                   isClear(sensorRadiusMm(1.0), apertureRadiusMm);
-        };
+    // The largest radius on the aperture up to which all are clear, or −1.
+    const auto clearRadiusMm = [&](double sensorRadiusMm) {
         double clearMm = -1.0;
         for (int i = 0; i <= radii; ++i) {
             const double radiusMm = domain.apertureRadiusMm * i / radii;
-            if (!isRingClear(radiusMm)) break;
+            if (!isClear(sensorRadiusMm, radiusMm)) break;
             clearMm = radiusMm;
         }
+        return clearMm;
+    };
+    double innerMm = clearRadiusMm(0.0);
+    for (std::size_t ring = 0; ring < rings; ++ring) {
+        const double outerMm =
+            clearRadiusMm(std::sqrt(static_cast<double>(ring + 1) / ringsPerSquaredMm_));
+        const double clearMm = std::min(innerMm, outerMm);
         squaredRadiiMm2_[ring] = clearMm < 0.0 ? -1.0 : clearMm * clearMm;
+        innerMm = outerMm;
     }
 }
 

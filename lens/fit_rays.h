@@ -1,6 +1,7 @@
 // The rays that a lens is fitted to: drawn in the fit's domain, traced exactly.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>

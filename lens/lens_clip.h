@@ -2,6 +2,8 @@
 // a ray starts and where it crosses the stop, so that it is known without tracing.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "lens/fit_rays.h"
@@ -38,12 +40,16 @@ struct ClipSettings {
 ClipFit fitClip(const TracedLens& lens, const FitDomain& domain, PolynomialBasis basis,
                 const ClipSettings& settings = {});
 
-/// `squares`: the polynomial's values.
-inline bool passesRims(std::span<const double> squares) {
-    for (const double squared : squares)
-        if (!(squared <= 1.0)) return false;
-    return true;
+/// Of the polynomial's values `squares` the largest, or NaN if one is.
+inline double highestSquare(std::span<const double> squares) {
+    double highest = 0.0;
+    for (const double squared : squares) {
+        if (std::isnan(squared)) return squared;
+        highest = std::max(highest, squared);
+    }
+    return highest;
 }
+inline bool passesRims(std::span<const double> squares) { return highestSquare(squares) <= 1.0; }
 
 /// On `rays` queries drawn anew.
 ClipErrors measureClip(const ClipFit& clip, const TracedLens& lens, const FitDomain& domain,

@@ -1,7 +1,5 @@
 #include "lens/polynomial_lens.h"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "lens/target_solver.h"
@@ -52,12 +50,7 @@ ConnectStatus PolynomialLens::statusOf(SensorPoint sensor, const ExitRay& ray,
 double PolynomialLens::highestSquare(SensorPoint sensor, AperturePoint aperture,
                                      double wavelengthNm) const {
     const PolynomialValues<double> squares = clip_.values({sensor.mm, aperture.mm, wavelengthNm});
-    double highest = 0.0;
-    for (std::size_t i = 0; i < clipCount_; ++i) {
-        if (std::isnan(squares[i])) return squares[i];
-        highest = std::max(highest, squares[i]);
-    }
-    return highest;
+    return etendue::highestSquare({squares.data(), clipCount_});
 }
 
 AperturePoint PolynomialLens::sampleAperture(Eigen::Vector2d u) const {

@@ -15,10 +15,9 @@ namespace {
 
 Vec3 firstLanes(const Spectrum& s) { return {s[0], s[1], s[2]}; }
 
-/// Of a pixel's three; zero where there are none.
-Vec3d colorOf(const ExactSums& sums, std::size_t pixel) {
-    if (sums.empty()) return {};
-    return {sums[3 * pixel], sums[3 * pixel + 1], sums[3 * pixel + 2]};
+/// Of a pixel; zero where there are none.
+Vec3d colorOf(const std::vector<ExactColor>& sums, std::size_t pixel) {
+    return sums.empty() ? Vec3d() : sums[pixel].value();
 }
 
 /// Zero where there was nothing to divide.
@@ -71,12 +70,12 @@ void Film::addTo(std::size_t slot, double value) {
 void Film::addSquare(std::size_t slot, double value) { state_.layerSums.add(slot, value * value); }
 
 void Film::addTo(std::size_t slot, Vec3 v) {
-    if (!state_.layerSums.addThree(slot, double{v.x}, double{v.y}, double{v.z})) countRounded();
+    for (int i = 0; i < 3; ++i) addTo(slot + static_cast<std::size_t>(i), double{v[i]});
 }
 
 void Film::expectSplats(std::uint64_t lightPathsPerSample) {
     samplesPerLightPath_ = 1.0 / static_cast<double>(lightPathsPerSample);
-    state_.splatSums.resize(3 * pixelCount());
+    state_.splatSums.resize(pixelCount());
     if (layers_.luminanceVariance) state_.sampleLuminance.resize(pixelCount());
 }
 
@@ -95,8 +94,7 @@ bool Film::add(int x, int y, const Spectrum& value) {
         throw std::logic_error("film: a camera sample, where no light of them was expected");
     const Vec3 color = firstLanes(value);
     const std::size_t pixel = pixelNumber(x, y);
-    if (!state_.cameraSums.addThree(3 * pixel, double{color.x}, double{color.y}, double{color.z}))
-        countRounded();
+    if (!state_.cameraSums[pixel].add(color.x, color.y, color.z)) countRounded();
     if (slots_.squares >= 0)
         for (int i = 0; i < 3; ++i) addSquare(slotOf(pixel, slots_.squares + i), double{color[i]});
     if (slots_.luminanceSquare >= 0) {
@@ -143,10 +141,10 @@ void Film::checkSize(const FilmState& other) const {
     const auto fits = [](std::size_t size, std::size_t expected) {
         return size == 0 || size == expected;
     };
-    const auto haveRests = [](const ExactSums& sums) { return sums.rests.size() == sums.size(); };
-    if (!fits(other.cameraSums.size(), 3 * pixelCount()) || !haveRests(other.cameraSums) ||
-        !fits(other.splatSums.size(), 3 * pixelCount()) || !haveRests(other.splatSums) ||
-        other.layerSums.size() != state_.layerSums.size() || !haveRests(other.layerSums) ||
+    if (!fits(other.cameraSums.size(), pixelCount()) ||
+        !fits(other.splatSums.size(), pixelCount()) ||
+        other.layerSums.size() != state_.layerSums.size() ||
+        other.layerSums.rests.size() != other.layerSums.size() ||
         !fits(other.extraSamples.size(), pixelCount()) ||
         !fits(other.sampleLuminance.size(), layers_.luminanceVariance ? pixelCount() : 0))
         throw std::invalid_argument("film: the state is of another window or of other layers");
@@ -154,14 +152,16 @@ void Film::checkSize(const FilmState& other) const {
 
 void Film::merge(const FilmState& other) {
     checkSize(other);
-    const auto addAll = [&](ExactSums& to, const ExactSums& from) {
+    const auto addAll = [&](std::vector<ExactColor>& to, const std::vector<ExactColor>& from) {
         to.resize(std::max(to.size(), from.size()));
         for (std::size_t i = 0; i < from.size(); ++i)
-            if (!to.add(i, from.sums[i], from.rests[i])) ++state_.roundedTerms;
+            if (!to[i].add(from[i])) ++state_.roundedTerms;
     };
     addAll(state_.cameraSums, other.cameraSums);
     addAll(state_.splatSums, other.splatSums);
-    addAll(state_.layerSums, other.layerSums);
+    const ExactSums& layers = other.layerSums;
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        if (!state_.layerSums.add(i, layers.sums[i], layers.rests[i])) ++state_.roundedTerms;
     if (!other.extraSamples.empty()) expectUnfinishedSample();
     for (std::size_t pixel = 0; pixel < other.extraSamples.size(); ++pixel)
         state_.extraSamples[pixel] =

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "renderer/exact_color.h"
 #include "renderer/exact_sums.h"
 #include "renderer/image_io.h"
 #include "renderer/spectrum.h"
@@ -39,9 +40,9 @@ struct FilmFeatures {
 /// All that a film remembers; write it down and a render can go on elsewhere.
 struct FilmState {
     // Pixel after pixel of the window, row by row.
-    ExactSums cameraSums;  // three a pixel; empty when camera samples bring no light
-    ExactSums splatSums;   // three a pixel; empty when nothing is splatted
-    ExactSums layerSums;   // as many as the layers have
+    std::vector<ExactColor> cameraSums;  // empty when camera samples bring no light
+    std::vector<ExactColor> splatSums;   // empty when nothing is splatted
+    ExactSums layerSums;                 // as many a pixel as the layers have
     std::uint64_t samples = 0;
     std::uint64_t lightPaths = 0;  // of the whole frame, not of the window alone
     std::uint64_t badSamples = 0;
@@ -82,8 +83,8 @@ public:
     explicit Film(const FrameWindow& window, const FilmLayers& layers = {},
                   FilmColor color = FilmColor::rgb);
 
-    /// From now on camera samples bring light. To be called before add(); 36 bytes a pixel.
-    void expectCameraLight() { state_.cameraSums.resize(3 * pixelCount()); }
+    /// From now on camera samples bring light. To be called before add(); 30 bytes a pixel.
+    void expectCameraLight() { state_.cameraSums.resize(pixelCount()); }
     /// Adds one sample's first three lanes. One that is negative or not finite is counted, left
     /// out, and reported by `false`.
     bool add(int x, int y, const Spectrum& value);
@@ -97,20 +98,17 @@ public:
     /// over all light paths. The value must be finite and not negative (isUsable).
     void addSplat(int x, int y, const Spectrum& value) {
         const std::size_t pixel = pixelNumber(x, y);
-        const Vec3d color{value[0], value[1], value[2]};
-        if (!state_.splatSums.addThree(3 * pixel, color.x, color.y, color.z)) countRounded();
+        if (!state_.splatSums[pixel].add(value[0], value[1], value[2])) countRounded();
         if (!state_.sampleLuminance.empty())
-            state_.sampleLuminance[pixel] +=
-                static_cast<float>(samplesPerLightPath_ * luminanceOf(color));
+            state_.sampleLuminance[pixel] += static_cast<float>(
+                samplesPerLightPath_ * luminanceOf(Vec3d{value[0], value[1], value[2]}));
     }
     /// Has the pixel brought near, if it is one of the window's, for what will be added soon.
     void expectSplat(int x, int y) const {
         if (x < window_.x || x - window_.x >= window_.width || y < window_.y ||
             y - window_.y >= window_.height)
             return;
-        const std::size_t i = 3 * pixelNumber(x, y);
-        __builtin_prefetch(state_.splatSums.sums.data() + i, 1);
-        __builtin_prefetch(state_.splatSums.rests.data() + i, 1);
+        __builtin_prefetch(&state_.splatSums[pixelNumber(x, y)], 1);
     }
     void addLightPaths(std::uint64_t count) { state_.lightPaths += count; }
     bool countBad();

@@ -126,11 +126,12 @@ void requireFinite(const FilmState& state, const fs::path& file) {
     const auto isFinite = [](const auto& values) {
         return std::ranges::all_of(values, [](auto v) { return std::isfinite(v); });
     };
-    const auto areFinite = [&](const ExactSums& sums) {
-        return isFinite(sums.sums) && isFinite(sums.rests);
+    const auto arePossible = [](const std::vector<ExactColor>& sums) {
+        return std::ranges::all_of(sums, [](const ExactColor& s) { return s.isPossible(); });
     };
-    if (!areFinite(state.cameraSums) || !areFinite(state.splatSums) ||
-        !areFinite(state.layerSums) || !isFinite(state.sampleLuminance))
+    if (!arePossible(state.cameraSums) || !arePossible(state.splatSums) ||
+        !isFinite(state.layerSums.sums) || !isFinite(state.layerSums.rests) ||
+        !isFinite(state.sampleLuminance))
         throw damaged(file, "has sums that are not finite");
 }
 
@@ -179,10 +180,10 @@ void writePart(const fs::path& file, const PartInfo& info, const Film& film,
                         !state.extraSamples.empty(), !state.sampleLuminance.empty()});
     trailer.headerSize = header.size();
     writer.write(header.data(), header.size());
-    for (const ExactSums* sums : {&state.cameraSums, &state.splatSums, &state.layerSums}) {
-        writer.write(sums->sums);
-        writer.write(sums->rests);
-    }
+    writer.write(state.cameraSums);
+    writer.write(state.splatSums);
+    writer.write(state.layerSums.sums);
+    writer.write(state.layerSums.rests);
     writer.write(state.extraSamples);
     writer.write(state.sampleLuminance);
     writer.write(&trailer, sizeof trailer - sizeof trailer.digest);
@@ -203,14 +204,12 @@ Part readPart(const fs::path& file) {
     const FrameWindow& window = header.part.info.window;
     const std::size_t pixels =
         static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
-    const auto readSums = [&](ExactSums& sums, std::size_t count) {
-        reader.read(sums.sums, count);
-        reader.read(sums.rests, count);
-    };
-    if (header.planes.cameraSums) readSums(state.cameraSums, 3 * pixels);
-    if (header.planes.splatSums) readSums(state.splatSums, 3 * pixels);
-    readSums(state.layerSums,
-             pixels * static_cast<std::size_t>(Film::sumsPerPixel(header.part.info.layers)));
+    if (header.planes.cameraSums) reader.read(state.cameraSums, pixels);
+    if (header.planes.splatSums) reader.read(state.splatSums, pixels);
+    const std::size_t layerSums =
+        pixels * static_cast<std::size_t>(Film::sumsPerPixel(header.part.info.layers));
+    reader.read(state.layerSums.sums, layerSums);
+    reader.read(state.layerSums.rests, layerSums);
     if (header.planes.extraSamples) reader.read(state.extraSamples, pixels);
     if (header.planes.sampleLuminance) reader.read(state.sampleLuminance, pixels);
     requireFinite(state, file);

@@ -14,7 +14,7 @@ namespace etendue {
 
 namespace {
 
-constexpr int version = 2;
+constexpr int version = 3;
 constexpr double mostCount = 0x1p62;
 
 struct LayerName {
@@ -160,8 +160,8 @@ std::uint64_t bytesOfSums(const PartHeader& header) {
                         static_cast<std::uint64_t>(info.window.height);
     constexpr std::uint64_t perSum = sizeof(double) + sizeof(float);
     std::uint64_t perPixel = static_cast<std::uint64_t>(Film::sumsPerPixel(info.layers)) * perSum;
-    if (header.planes.cameraSums) perPixel += 3 * perSum;
-    if (header.planes.splatSums) perPixel += 3 * perSum;
+    if (header.planes.cameraSums) perPixel += sizeof(ExactColor);
+    if (header.planes.splatSums) perPixel += sizeof(ExactColor);
     if (header.planes.extraSamples) perPixel += sizeof(std::uint16_t);
     if (header.planes.sampleLuminance) perPixel += sizeof(float);
     return pixels * perPixel;

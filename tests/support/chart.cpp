@@ -123,9 +123,9 @@ std::vector<PixelMap> renderChart(const Scene& scene, const Camera& camera, cons
         for (std::size_t p = 0; p < static_cast<std::size_t>(width * height); ++p) {
             double value = 0.0;
             if (!state.cameraSums.empty())
-                value += state.cameraSums[3 * p] / static_cast<double>(state.samples);
+                value += state.cameraSums[p].value().x / static_cast<double>(state.samples);
             if (!state.splatSums.empty())
-                value += state.splatSums[3 * p] / static_cast<double>(state.lightPaths);
+                value += state.splatSums[p].value().x / static_cast<double>(state.lightPaths);
             map.push_back(value);
         }
     }

@@ -36,9 +36,8 @@ Vec3 renderedSum(const std::filesystem::path& scene, const std::vector<std::stri
     settings.seed = 5;
     render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator), filter, film, settings,
            {});
-    const ExactSums& sums = film.state().cameraSums;
-    if (sums.empty()) return {};
-    return {static_cast<float>(sums[0]), static_cast<float>(sums[1]), static_cast<float>(sums[2])};
+    const std::vector<ExactColor>& sums = film.state().cameraSums;
+    return sums.empty() ? Vec3() : toFloat(sums[0].value());
 }
 
 }  // namespace

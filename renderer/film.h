@@ -103,12 +103,13 @@ public:
             state_.sampleLuminance[pixel] += static_cast<float>(
                 samplesPerLightPath_ * luminanceOf(Vec3d{value[0], value[1], value[2]}));
     }
-    /// Has the pixel brought near, if it is one of the window's, for what will be added soon.
-    void expectSplat(int x, int y) const {
-        if (x < window_.x || x - window_.x >= window_.width || y < window_.y ||
-            y - window_.y >= window_.height)
-            return;
-        __builtin_prefetch(&state_.splatSums[pixelNumber(x, y)], 1);
+    /// Has pixels first … last of a row brought near, for what will be splatted on them soon. To be
+    /// inlined, since GCC drops calls to a function that does nothing but prefetch.
+    [[gnu::always_inline]] void expectSplat(int first, int last, int y) const {
+        const std::size_t begin = pixelNumber(first, y), end = pixelNumber(last, y) + 1;
+        prefetch(state_.splatSums.data() + begin, state_.splatSums.data() + end);
+        if (!state_.sampleLuminance.empty())
+            prefetch(state_.sampleLuminance.data() + begin, state_.sampleLuminance.data() + end);
     }
     void addLightPaths(std::uint64_t count) { state_.lightPaths += count; }
     bool countBad();
@@ -168,6 +169,13 @@ private:
         assert(y >= window_.y && y - window_.y < window_.height);
         return static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
                static_cast<std::size_t>(x - window_.x);
+    }
+    /// Each cache line of some memory, which is not empty.
+    [[gnu::always_inline]] static void prefetch(const void* begin, const void* end) {
+        const char* last = static_cast<const char*>(end) - 1;
+        for (const char* p = static_cast<const char*>(begin); p < last; p += 64)
+            __builtin_prefetch(p, 1);
+        __builtin_prefetch(last, 1);
     }
     /// Where a pixel's sum of a layer lies.
     std::size_t slotOf(std::size_t pixel, int slot) const {

@@ -137,10 +137,8 @@ float Filter::sampleAxis(float u) const {
     return signedMass < 0.0 ? -x * radius_ : x * radius_;
 }
 
-double Filter::pdfAxis(float offset) const {
-    if (!(-radius_ <= offset && offset < radius_)) return 0.0;
-    if (kind_ == FilterKind::box) return peak_;
-    return peak_ * shapeOf(kind_).density(std::abs(offset / radius_));
+double Filter::relativeToBox(float offset) const {
+    return shapeOf(kind_).density(std::abs(offset / radius_));
 }
 
 Vec2 Filter::sample(Vec2 u) const {

@@ -28,7 +28,10 @@ public:
         return static_cast<float>(pdfAxis(offset.x) * pdfAxis(offset.y));
     }
     /// Its factor for one axis, 1/pixel.
-    double pdfAxis(float offset) const;
+    double pdfAxis(float offset) const {
+        if (!(-radius_ <= offset && offset < radius_)) return 0.0;
+        return kind_ == FilterKind::box ? peak_ : peak_ * relativeToBox(offset);
+    }
 
     FilterKind kind() const { return kind_; }
     float radius() const { return radius_; }
@@ -38,6 +41,7 @@ private:
     static const Table& tableOf(FilterKind kind);
 
     float sampleAxis(float u) const;
+    double relativeToBox(float offset) const;
 
     FilterKind kind_;
     float radius_;

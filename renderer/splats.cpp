@@ -1,7 +1,6 @@
 #include "renderer/splats.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -32,11 +31,9 @@ public:
           firstRow_(film.window().y + index * bandRows),
           endRow_(std::min(firstRow_ + bandRows, film.window().y + film.window().height)) {}
 
-    void add(const SplatList::Splat& splat) {
-        const FrameWindow& window = film_.window();
-        const float radius = filter_.radius();
-        const Reach columns(splat.film.x, radius, window.x, window.x + window.width);
-        const Reach rows(splat.film.y, radius, firstRow_, endRow_);
+    // Not inlined, lest its variables leave the registers.
+    [[gnu::noinline]] void add(const SplatList::Splat& splat) {
+        const Reach columns = columnsOf(splat), rows = rowsOf(splat);
         columnDensities_.clear();
         for (int x = columns.first; x <= columns.last; ++x)
             columnDensities_.push_back(
@@ -56,11 +53,21 @@ public:
     }
 
     /// That it will be added soon.
-    void expect(const SplatList::Splat& splat) const {
-        film_.expectSplat(static_cast<int>(splat.film.x), static_cast<int>(splat.film.y));
+    [[gnu::always_inline]] void expect(const SplatList::Splat& splat) const {
+        const Reach columns = columnsOf(splat), rows = rowsOf(splat);
+        for (int y = rows.first; y <= rows.last; ++y)
+            film_.expectSplat(columns.first, columns.last, y);
     }
 
 private:
+    Reach columnsOf(const SplatList::Splat& splat) const {
+        const FrameWindow& window = film_.window();
+        return {splat.film.x, filter_.radius(), window.x, window.x + window.width};
+    }
+    Reach rowsOf(const SplatList::Splat& splat) const {
+        return {splat.film.y, filter_.radius(), firstRow_, endRow_};
+    }
+
     const Filter& filter_;
     Film& film_;
     TechniqueImages* images_;
@@ -116,19 +123,17 @@ void addSplats(std::span<const SplatList> lists, const Filter& filter, int threa
     parallelFor(bands, threads, [&](std::size_t b) {
         const int index = static_cast<int>(b);
         Band band(index, filter, film, images);
-        // A pixel somewhere in the film takes as long to come as several splats take to add.
-        constexpr std::size_t ahead = 8;
-        std::array<const SplatList::Splat*, ahead> waiting;
-        std::size_t count = 0;
+        std::vector<const SplatList::Splat*> splats;
         for (const SplatList& list : lists)
-            for (const std::uint32_t number : list.band(index)) {
-                const SplatList::Splat*& place = waiting[count++ % ahead];
-                if (count > ahead) band.add(*place);
-                place = &list[number];
-                band.expect(*place);
-            }
-        for (std::size_t i = count - std::min(count, ahead); i < count; ++i)
-            band.add(*waiting[i % ahead]);
+            for (const std::uint32_t number : list.band(index)) splats.push_back(&list[number]);
+        // A splat takes some time to come from memory, and then its pixel, as long as it takes to
+        // add several.
+        constexpr std::size_t ahead = 16;
+        for (std::size_t i = 0; i < splats.size(); ++i) {
+            if (i + 2 * ahead < splats.size()) __builtin_prefetch(splats[i + 2 * ahead]);
+            if (i + ahead < splats.size()) band.expect(*splats[i + ahead]);
+            band.add(*splats[i]);
+        }
     });
 }
 

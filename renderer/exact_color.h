@@ -56,10 +56,10 @@ public:
     /// The nearest doubles.
     Vec3d value() const {
         const Sums sums = unpack();
-        const auto valueOf = [&](std::size_t k) {
-            return std::ldexp(static_cast<double>(sums.of[k]), sums.unit + leastExponent);
-        };
-        return {valueOf(0), valueOf(1), valueOf(2)};
+        const double unit = std::ldexp(1.0, sums.unit + leastExponent);
+        return Vec3d{static_cast<double>(sums.of[0]), static_cast<double>(sums.of[1]),
+                     static_cast<double>(sums.of[2])} *
+               unit;
     }
 
     /// Whether fewer than 2⁶⁴ floats can add up to it: what is read from a file may be anything.

@@ -39,14 +39,17 @@ RandomStream cameraPathRandom(const View& view, SampleId id) {
 
 RandomStream lightPathRandom(const View& view, SampleId id, int path, int count) {
     const std::uint32_t pixel = pixelIndex(view, id);
-    const std::uint32_t sample =
-        id.sample * static_cast<std::uint32_t>(count) + static_cast<std::uint32_t>(path);
-    const RandomStream random(id.seed, pixel, sample, RandomDomain::lightPath);
+    const std::uint64_t pathOfPixel = std::uint64_t{id.sample} * static_cast<std::uint64_t>(count) +
+                                      static_cast<std::uint64_t>(path);
+    const RandomStream random(id.seed, pixel, pathOfPixel, RandomDomain::lightPath);
     if (id.sampler != Sampler::sobol) return random;
     const CameraSettings& frame = view.camera.settings();
     const auto pixels =
-        static_cast<std::uint32_t>(frame.width) * static_cast<std::uint32_t>(frame.height);
-    return RandomStream(random, 0, sample * pixels + pixel);
+        static_cast<std::uint64_t>(frame.width) * static_cast<std::uint64_t>(frame.height);
+    // A sequence has 2³² points. 2³² paths of a pixel are a whole number of sequences.
+    const std::uint64_t point = pathOfPixel * pixels + pixel;
+    return RandomStream(random, static_cast<std::uint32_t>(point >> 32),
+                        static_cast<std::uint32_t>(point));
 }
 
 bool isParted(const View& view) { return view.isSpectral && view.camera.settings().isDispersive; }

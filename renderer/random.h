@@ -49,22 +49,25 @@ enum class Sampler {
 /// The numbers of one path, dimension after dimension.
 class RandomStream {
 public:
-    /// Independent ones. `index` is the pixel's or light path's index, `sample` the global sample
-    /// index.
-    constexpr RandomStream(std::uint64_t seed, std::uint32_t index, std::uint32_t sample,
+    /// Independent ones. `index` is the pixel's index, `sample` that of the pixel's sample or light
+    /// path, below 2⁵⁶.
+    constexpr RandomStream(std::uint64_t seed, std::uint32_t index, std::uint64_t sample,
                            RandomDomain domain = RandomDomain::cameraPath)
         : key0_(static_cast<std::uint32_t>(seed)),
           key1_(static_cast<std::uint32_t>(seed >> 32)),
-          counter_{0, sample, index, static_cast<std::uint32_t>(domain)} {}
+          counter_{0, static_cast<std::uint32_t>(sample), index,
+                   static_cast<std::uint32_t>(domain) |
+                       static_cast<std::uint32_t>(sample >> 32 << domainBits)} {}
 
     /// Point number `point` of a Sobol' sequence; those of each `sequence` and seed are scrambled
     /// by themselves. After sobolDimensions numbers the stream goes on as `independent`, which must
-    /// be fresh and of the same seed and domain.
+    /// be fresh and of the same seed and domain, and of one upper half of its sample in all points
+    /// of a sequence.
     RandomStream(const RandomStream& independent, std::uint32_t sequence, std::uint32_t point)
         : RandomStream(independent) {
         sample_ = counter_[1];
         index_ = counter_[2];
-        counter_[1] = ~0u;  // no sample has this number
+        counter_[1] = ~0u;  // one path at most has this number, and later blocks
         counter_[2] = sequence;
         // The order of the points, shuffled in the nested way that keeps them stratified, so that
         // domains with the same point number are independent.
@@ -91,6 +94,8 @@ public:
     }
 
 private:
+    static constexpr int domainBits = 8;
+
     constexpr std::uint32_t nextIndependentBits() {
         if (used_ == 4) {
             block_ = philox(counter_, key0_, key1_);

@@ -2,11 +2,14 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <set>
 #include <vector>
 
+#include "renderer/estimator.h"
 #include "renderer/random.h"
 #include "statistics/statistics.h"
+#include "tests/support/scenes.h"
 
 using namespace etendue;
 
@@ -100,4 +103,31 @@ TEST_CASE("Random: beyond the sequence's dimensions a stream goes on with indepe
     CHECK(bits != b.nextBits());
     CHECK(bits != c.nextBits());
     CHECK(bits != a.nextBits());
+}
+
+TEST_CASE(
+    "Random: more than 2³² light paths, of a pixel or of a frame, have numbers of their own") {
+    const LoadedScene loaded = sceneFromText(ballScene, {"film.width=64", "film.height=64"});
+    const Filter filter(FilterKind::box);
+    const View view{*loaded.scene, *loaded.camera, filter};
+    const auto firstNumbers = [&](Sampler sampler, std::uint32_t sample, int count) {
+        RandomStream random = lightPathRandom(view, {1, 3, 5, sample, sampler}, 7, count);
+        const Vec2 a = random.next2(), b = random.next2();
+        return std::array{a.x, a.y, b.x, b.y};
+    };
+    constexpr int most = 1024;  // light paths of a sample
+    for (const Sampler sampler : {Sampler::independent, Sampler::sobol})
+        for (const std::uint32_t pathsOfPixel : {1u << 22, 1u << 31})  // 2³² and 2⁴¹
+            CHECK(firstNumbers(sampler, 0, most) != firstNumbers(sampler, pathsOfPixel, most));
+    // 64² paths a sample: the sequence's points come to an end, and another begins.
+    constexpr std::uint32_t sequence = 1u << 20;
+    CHECK(firstNumbers(Sampler::sobol, 0, 1) != firstNumbers(Sampler::sobol, sequence, 1));
+    std::set<std::uint32_t> strata;
+    for (std::uint32_t sample = 0; sample < 256; ++sample)
+        for (int x = 0; x < 64; ++x)
+            for (int y = 0; y < 64; ++y) {
+                const SampleId id{1, x, y, sequence + sample, Sampler::sobol};
+                strata.insert(lightPathRandom(view, id, 0, 1).nextBits() >> 12);
+            }
+    CHECK(strata.size() == 1u << 20);
 }

@@ -61,6 +61,15 @@ bool contains(const FrameWindow& window, int x, int y) {
            y - window.y < window.height;
 }
 
+/// Of all in a fixed order, by sample, then by pixel, the first few.
+void keepFirst(std::vector<BadSample>& bad) {
+    std::sort(bad.begin(), bad.end(), [](const BadSample& a, const BadSample& b) {
+        return std::tie(a.sample, a.y, a.x, a.technique) <
+               std::tie(b.sample, b.y, b.x, b.technique);
+    });
+    bad.resize(std::min(bad.size(), badSamplesKept));
+}
+
 /// Everything a thread needs to take samples.
 struct Recorder {
     const View& view;
@@ -72,7 +81,7 @@ struct Recorder {
     bool hasCameraLight = estimator.hasCameraLight();
 
     std::mutex badMutex{};
-    std::vector<BadSample> bad{};
+    std::vector<BadSample> bad{};  // the first few, and some more
 
     /// Adds what the samples of these pixels bring to them, if they belong to the film, and records
     /// what they splat, if there is a list.
@@ -93,6 +102,7 @@ struct Recorder {
         Spectrum sum;
         for (const Contribution& c : sample.contributions) {
             if (!isUsable(c.value * c.weight)) {
+                film.countBad();
                 rememberBad({x, y, index, c.technique});
                 continue;
             }
@@ -107,13 +117,15 @@ struct Recorder {
         if (hasCameraLight || !isBlack(sum))
             if (!film.add(x, y, sum)) rememberBad({x, y, index, {}});
         if (const auto& hit = sample.firstHit)
-            film.addFeatures(
-                x, y, {hit->albedo, hit->point.shading.z, hit->point.position, hit->distance});
+            if (!film.addFeatures(
+                    x, y, {hit->albedo, hit->point.shading.z, hit->point.position, hit->distance}))
+                rememberBad({x, y, index, {}});
     }
 
     void rememberBad(BadSample b) {
         const std::lock_guard lock(badMutex);
         bad.push_back(b);
+        if (bad.size() == 64 * badSamplesKept) keepFirst(bad);
     }
 };
 
@@ -164,16 +176,6 @@ std::size_t listCount(int threads, std::uint64_t lightPaths) {
            std::max<std::size_t>(partsPerThread / lightPaths, fewestPartsPerThread);
 }
 
-/// The first few in a fixed order: by sample, then by pixel.
-std::vector<BadSample> firstOf(std::vector<BadSample> bad) {
-    std::sort(bad.begin(), bad.end(), [](const BadSample& a, const BadSample& b) {
-        return std::tie(a.sample, a.y, a.x, a.technique) <
-               std::tie(b.sample, b.y, b.x, b.technique);
-    });
-    bad.resize(std::min(bad.size(), badSamplesKept));
-    return bad;
-}
-
 double secondsSince(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -221,7 +223,7 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
         lists.resize(listCount(settings.threads, lightPaths), SplatList(film.window(), filter));
     }
     const double pixels = static_cast<double>(film.pixelCount());
-    const std::uint64_t refusedBefore = scene.refusedRays();
+    const std::uint64_t badBefore = film.badSamples(), refusedBefore = scene.refusedRays();
     const View view{scene, camera, filter, film.color() == FilmColor::xyz};
     Recorder recorder{view,          estimator,       film, settings.techniqueImages,
                       settings.seed, settings.sampler};
@@ -268,8 +270,9 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
         if (onBatch && !onBatch(progress))
             result.wasInterrupted = result.samples < settings.samples;
     }
-    result.badSampleCount = recorder.bad.size();
-    result.badSamples = firstOf(std::move(recorder.bad));
+    result.badSampleCount = film.badSamples() - badBefore;
+    keepFirst(recorder.bad);
+    result.badSamples = std::move(recorder.bad);
     result.refusedRays = scene.refusedRays() - refusedBefore;
     return result;
 }

@@ -238,6 +238,37 @@ TEST_CASE("Render: the weighted pictures of all techniques sum to the picture") 
         CHECK(sum[i] == doctest::Approx(static_cast<double>(picture[i])).epsilon(1e-5));
 }
 
+TEST_CASE(
+    "Render: what is not finite is counted in the film's state too, and the first are named") {
+    const std::string scene = std::string(ballScene) +
+                              "[[light]]\ntype = \"point\"\nposition = [0, 2, 2]\nintensity = "
+                              "[1e30, 1e30, 1e30]\n";
+    for (const char* estimator : {"pt", "lt", "bdpt"}) {
+        CAPTURE(estimator);
+        const LoadedScene loaded = sceneFromText(
+            scene, {"camera.exposure=60", std::string("estimator.kind=") + estimator});
+        const auto badSamples = [&](int threads) {
+            Film film({30, 20, 0, 0, 30, 20});
+            RenderSettings settings;
+            settings.samples = 16;
+            settings.threads = threads;
+            const RenderResult result =
+                render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator),
+                       Filter(FilterKind::box), film, settings, {});
+            CHECK(film.state().badSamples == result.badSampleCount);
+            CHECK(result.badSampleCount > 1024);
+            std::vector<std::tuple<std::uint32_t, int, int>> places;
+            for (const BadSample& b : result.badSamples) places.emplace_back(b.sample, b.y, b.x);
+            return places;
+        };
+        const auto places = badSamples(1);
+        CHECK(places.size() == 16);
+        CHECK(std::is_sorted(places.begin(), places.end()));
+        CHECK(std::get<0>(places.back()) == 0);
+        CHECK(places == badSamples(8));
+    }
+}
+
 TEST_CASE("Render: a filter changes no constant picture, at the border neither") {
     for (const char* filter : {"box", "gaussian", "blackman-harris"}) {
         const LoadedScene loaded = sceneFromText(

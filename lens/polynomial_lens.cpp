@@ -124,13 +124,12 @@ void PolynomialLens::seeEach(const Eigen::Vector3d& targetMm, AperturePoint aper
         if (!canSee(targetMm, aperture, wavelengthsNm[i])) continue;
         Guess guess = firstGuess(sight, aperture, wavelengthsNm[i]);
         if (guess.status != ConnectStatus::found) continue;
-        const Eigen::Vector2d first = guess.sensorMm;
-        guess.sensorMm += missedBy;
+        guess.correctionMm = missedBy;
         Connection connection;
         const std::optional<Aimed> end =
             aim(targetMm, aperture, wavelengthsNm[i], guess, sightToleranceRadians, connection);
         if (!end) continue;
-        missedBy = end->sensor - first;
+        missedBy = end->sensor - guess.sensorMm;
         if (connection.status == ConnectStatus::found)
             sightings[i] = Sighting{{end->sensor}, end->ray};
     }
@@ -153,7 +152,7 @@ std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, Aperture
         return map_.exitRay({s}, {apertureShare * aperture.mm}, wavelengthNm);
     };
     TargetSolver solver(exit, focalLengthMm_, toleranceRadians);
-    std::optional<Aimed> end = solver.newton(target, guess.sensorMm);
+    std::optional<Aimed> end = solver.newton(target, guess.sensorMm + guess.correctionMm);
     if (!end) end = solver.follow(target);
     connection.iterations = solver.steps();
     connection.status =

@@ -51,6 +51,7 @@ private:
         ConnectStatus status;
         Eigen::Vector2d sensorMm;
         bool passesRims;  // so clearly that a ray from near it does, too; false says nothing
+        Eigen::Vector2d correctionMm{0.0, 0.0};  // from it to where the search had better begin
     };
     Guess firstGuess(const TargetSight& sight, AperturePoint aperture, double wavelengthNm) const;
     /// The largest of the clip polynomials, or NaN if one is: unless it is at most 1 a rim blocks

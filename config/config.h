@@ -88,6 +88,16 @@ public:
     /// exist.
     std::filesystem::path file(std::string_view key) const;
     std::vector<std::filesystem::path> files(std::string_view key) const;
+    /// What `read` makes of file(key). An InputError of it also says who named the file.
+    template <class Read>
+    auto readFile(std::string_view key, const Read& read) const {
+        const std::filesystem::path named = file(key);
+        try {
+            return read(named);
+        } catch (const InputError& error) {
+            failNamedFile(key, error);
+        }
+    }
 
     /// True when the value is an array of numbers or, respectively, a string: for keys that take
     /// either.
@@ -103,7 +113,13 @@ public:
     void finish() const;
 
     /// Throws InputError at the key's line (at the table's if the key is missing or empty).
-    [[noreturn]] void fail(std::string_view key, const std::string& message) const;
+    [[noreturn]] void fail(std::string_view key, const std::string& message,
+                           ExitCode code = ExitCode::badInput) const;
+    /// The same at an entry of texts(key).
+    [[noreturn]] void failEntry(std::string_view key, std::size_t index, const std::string& message,
+                                ExitCode code = ExitCode::badInput) const;
+    /// Throws the error again, with the key that names the file it is about.
+    [[noreturn]] void failNamedFile(std::string_view key, const InputError& error) const;
 
     std::string where() const;  // "file:line"
 
@@ -159,6 +175,9 @@ private:
     explicit Config(std::shared_ptr<const ConfigNode> root) : root_(std::move(root)) {}
     std::shared_ptr<const ConfigNode> root_;  // never changed, only replaced
 };
+
+/// How messages name an override: "-s key=value", cut if it is long.
+std::string overrideName(std::string_view assignment);
 
 /// The text, with U+FFFD for bytes that are no UTF-8, of which a document must be: file names may
 /// have such.

@@ -39,6 +39,7 @@ std::string numbersText(std::size_t count, Range range) {
 }
 
 std::string choiceText(const std::vector<std::string>& names) {
+    if (names.empty()) return "one of the names defined here (there are none)";
     std::string result = "one of ";
     for (const std::string& name : names)
         result += (&name == names.data() ? "" : ", ") + inQuotes(name);
@@ -287,9 +288,22 @@ void ConfigTable::finish() const {
     }
 }
 
-void ConfigTable::fail(std::string_view key, const std::string& message) const {
+void ConfigTable::fail(std::string_view key, const std::string& message, ExitCode code) const {
     const ConfigNode* node = key.empty() ? nullptr : tableOf(*node_).find(key);
-    failAt(node ? *node : *node_, key.empty() ? path_ : joinPath(path_, key), message);
+    failAt(node ? *node : *node_, key.empty() ? path_ : joinPath(path_, key), message, code);
+}
+
+void ConfigTable::failEntry(std::string_view key, std::size_t index, const std::string& message,
+                            ExitCode code) const {
+    const Item item = textItems(key).at(index);
+    failAt(item.node, item.path, message, code);
+}
+
+void ConfigTable::failNamedFile(std::string_view key, const InputError& error) const {
+    const ConfigNode* node = find(key);
+    throw InputError(std::string(error.what()) + " (named by " + (node ? *node : *node_).where() +
+                         ", " + joinPath(path_, key) + ")",
+                     error.code());
 }
 
 std::string ConfigTable::where() const { return node_->where(); }

@@ -128,10 +128,12 @@ ConfigNode& childOf(ConfigNode& parent, const std::string& key, const std::strin
 
 }  // namespace
 
+std::string overrideName(std::string_view assignment) { return "-s " + printable(assignment, 200); }
+
 void Config::set(std::string_view assignment) {
     std::error_code ignored;  // without a current folder relative names stay as they are
-    const Source source = std::make_shared<const ConfigSource>(ConfigSource{
-        "-s " + printable(assignment, 200), std::filesystem::current_path(ignored), true});
+    const Source source = std::make_shared<const ConfigSource>(
+        ConfigSource{overrideName(assignment), std::filesystem::current_path(ignored), true});
     const std::size_t equals = findUnquoted(assignment, "=");
     if (equals == assignment.size()) fail(source, "expected key=value");
     const std::vector<std::string> keys = splitKey(assignment.substr(0, equals), source);

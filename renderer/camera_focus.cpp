@@ -11,9 +11,19 @@ namespace {
 
 constexpr double mmPerMetre = 1e3;
 
+Vec2 focusPixel(const ConfigTable& table, const CameraSettings& frame) {
+    const std::vector<double> pixel = table.numbers("focus_pixel", 2, Range::any());
+    const bool isInside =
+        pixel[0] >= 0.0 && pixel[0] <= frame.width && pixel[1] >= 0.0 && pixel[1] <= frame.height;
+    if (!isInside)
+        table.fail("focus_pixel", "must lie in the frame of " + std::to_string(frame.width) +
+                                      " × " + std::to_string(frame.height) + " pixels");
+    return {static_cast<float>(pixel[0]), static_cast<float>(pixel[1])};
+}
+
 }  // namespace
 
-FocusRequest focusRequest(const ConfigTable& table) {
+FocusRequest focusRequest(const ConfigTable& table, const CameraSettings& frame) {
     FocusRequest request;
     int asked = 0;
     const auto isAsked = [&](const char* key) {
@@ -27,10 +37,7 @@ FocusRequest focusRequest(const ConfigTable& table) {
     if (isAsked("focus_distance"))
         request.distanceMm = mmPerMetre * table.number("focus_distance", {1e-6, Range::infinity});
     if (isAsked("focus_point")) request.point = vector3(table, "focus_point");
-    if (isAsked("focus_pixel")) {
-        const std::vector<double> pixel = table.numbers("focus_pixel", 2, {0.0, 32768.0});
-        request.film = Vec2{static_cast<float>(pixel[0]), static_cast<float>(pixel[1])};
-    }
+    if (isAsked("focus_pixel")) request.film = focusPixel(table, frame);
     if (isAsked("sensor_shift_mm"))
         request.sensorShiftMm = table.number("sensor_shift_mm", {0.0, 1e5});
     return request;

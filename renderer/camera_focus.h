@@ -6,6 +6,7 @@
 #include "config/config.h"
 #include "lens/paraxial.h"
 #include "lens/prescription.h"
+#include "renderer/camera.h"
 #include "renderer/scene.h"
 #include "renderer/transform.h"
 
@@ -20,8 +21,8 @@ struct FocusRequest {
         sensorShiftMm;  // from the sensor's place for infinity, away from the lens
 };
 
-/// focus_distance, focus_point, focus_pixel and sensor_shift_mm.
-FocusRequest focusRequest(const ConfigTable& table);
+/// focus_distance, focus_point, focus_pixel, which must lie in the frame, and sensor_shift_mm.
+FocusRequest focusRequest(const ConfigTable& table, const CameraSettings& frame);
 /// The key that asked, for messages.
 const char* keyOf(const FocusRequest& request);
 

@@ -10,20 +10,37 @@ namespace etendue {
 
 namespace {
 
-Transform placeCamera(const ConfigTable& table) {
-    const Vec3d from = place(table, "from"), to = place(table, "to");
-    const Vec3d up = table.has("up") ? vector3(table, "up") : Vec3d{0, 1, 0};
-    if (!(length(to - from) > 0.0)) table.fail("to", "must differ from 'from'");
-    if (!(length(cross(up, to - from)) > 1e-9 * length(up) * length(to - from)))
-        table.fail("up", "must not be parallel to the viewing direction");
-    return lookAt(from, to, up);
+/// Whether somebody says where the camera stands. Who says a part of it must say all.
+bool isPlaced(const ConfigTable& table) { return table.has("from") || table.has("to"); }
+
+/// Outside the scene's bounds, from the front, a little from the right and above, with all of them
+/// in view.
+Vec3d automaticPlace(const ConfigTable& table, const Eigen::Vector2d& focalMm,
+                     const CameraSettings& frame, BoundingSphere bounds) {
+    const double heightPerWidth = static_cast<double>(frame.height) / frame.width;
+    const Eigen::Vector2d halfTangents =
+        0.5 * frame.sensorWidthMm * Eigen::Vector2d(1.0, heightPerWidth).cwiseQuotient(focalMm);
+    const double narrow = halfTangents.minCoeff();
+    const double distance = bounds.radius * std::sqrt(1.0 + 1.0 / (narrow * narrow));
+    if (!(distance <= farthestPlace))
+        table.fail("", "the whole scene is in view from beyond 1e15 m only: give from and to");
+    return toDouble(bounds.center) + normalize(Vec3d{0.45, 0.35, 1.0}) * distance;
 }
 
-/// Focal length, or the horizontal field of view that the sensor's width turns into one.
+Transform lookAt(Vec3d from, Vec3d to, Vec3d up) {
+    const Vec3d z = normalize(to - from);
+    const Vec3d x = normalize(cross(up, z));
+    return {x, cross(z, x), z, from};
+}
+
+/// Focal length, or the horizontal field of view that the sensor's width turns into one. With
+/// neither, a camera that nobody placed has a field of view for looking at things.
 double focalLengthMm(const ConfigTable& table, double sensorWidthMm) {
-    if (!table.has("fov")) return table.number("focal_length_mm", {1e-3, 1e5}, 50.0);
-    if (table.has("focal_length_mm")) table.fail("fov", "give either fov or focal_length_mm");
-    const double fovDegrees = table.number("fov", {0.01, 179.0});
+    const bool hasFocalLength = table.has("focal_length_mm"), hasFov = table.has("fov");
+    if (hasFocalLength && hasFov) table.fail("fov", "give either fov or focal_length_mm");
+    if (hasFocalLength || (isPlaced(table) && !hasFov))
+        return table.number("focal_length_mm", {1e-3, 1e5}, 50.0);
+    const double fovDegrees = table.number("fov", {0.01, 179.0}, 35.0);
     return 0.5 * sensorWidthMm / std::tan(fovDegrees * std::numbers::pi / 360.0);
 }
 
@@ -40,7 +57,7 @@ double distanceFromLensMm(const ConfigTable& table, double distanceMm, double fo
 /// Distance in front of a thin lens at which it is sharp, infinity allowed.
 double thinLensFocusMm(const ConfigTable& table, double focalMm, const CameraSettings& settings,
                        const Scene& scene) {
-    const FocusRequest request = focusRequest(table);
+    const FocusRequest request = focusRequest(table, settings);
     if (request.sensorShiftMm) return focalMm * (focalMm / *request.sensorShiftMm + 1.0);
     if (request.distanceMm) return distanceFromLensMm(table, *request.distanceMm, focalMm);
     if (!request.point && !request.film)
@@ -74,10 +91,17 @@ std::shared_ptr<const LensModel> loadThinLens(const ConfigTable& table, double f
 
 }  // namespace
 
-Transform lookAt(Vec3d from, Vec3d to, Vec3d up) {
-    const Vec3d z = normalize(to - from);
-    const Vec3d x = normalize(cross(up, z));
-    return {x, cross(z, x), z, from};
+Transform placeCamera(const ConfigTable& table, const Eigen::Vector2d& focalMm,
+                      const CameraSettings& frame, const Scene& scene) {
+    const bool isAutomatic = !isPlaced(table);
+    const Vec3d from =
+        isAutomatic ? automaticPlace(table, focalMm, frame, scene.bounds()) : place(table, "from");
+    const Vec3d to = isAutomatic ? toDouble(scene.bounds().center) : place(table, "to");
+    const Vec3d up = table.has("up") ? vector3(table, "up") : Vec3d{0, 1, 0};
+    if (!(length(to - from) > 0.0)) table.fail("to", "must differ from 'from'");
+    if (!(length(cross(up, to - from)) > 1e-9 * length(up) * length(to - from)))
+        table.fail("up", "must not be parallel to the viewing direction");
+    return lookAt(from, to, up);
 }
 
 void loadCamera(const ConfigTable& table, const LoadOptions& options, LoadingScene& loading,
@@ -85,7 +109,6 @@ void loadCamera(const ConfigTable& table, const LoadOptions& options, LoadingSce
     CameraSettings settings;
     settings.width = loaded.film.width;
     settings.height = loaded.film.height;
-    settings.worldFromLens = placeCamera(table);
     settings.sensorWidthMm = table.number("sensor_width_mm", {1e-3, 1e5}, 36.0);
     settings.exposureStops = table.number("exposure", {-60, 60}, 0.0);
     if (table.has("sensor_offset_mm")) {
@@ -100,6 +123,7 @@ void loadCamera(const ConfigTable& table, const LoadOptions& options, LoadingSce
     } else {
         const std::string model = table.choice("model", {"pinhole", "thin-lens"}, "pinhole");
         const double focalMm = focalLengthMm(table, settings.sensorWidthMm);
+        settings.worldFromLens = placeCamera(table, {focalMm, focalMm}, settings, *loaded.scene);
         lens = model == "pinhole" ? makePinhole(focalMm)
                                   : loadThinLens(table, focalMm, settings, loaded);
     }

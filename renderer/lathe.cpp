@@ -11,7 +11,7 @@ using Curve = std::vector<Vec2d>;
 double norm(Vec2d a) { return std::hypot(a.x, a.y); }
 
 [[noreturn]] void reject(std::size_t index, const std::string& what) {
-    throw std::invalid_argument("lathe: profile point " + std::to_string(index + 1) + " " + what);
+    throw std::invalid_argument("lathe: profile[" + std::to_string(index) + "] " + what);
 }
 
 void requireProfile(std::span<const Vec2> profile, int segments, int subdivisions,

@@ -1,4 +1,5 @@
 // [camera] lens = …: a lens of glass, by its exact trace or by a polynomial fitted to it.
+#include <algorithm>
 #include <stdexcept>
 
 #include "lens/axial_beam.h"
@@ -41,7 +42,7 @@ ExitRay chiefRay(const ConfigTable& table, const Prescription& prescription,
 double focusDistanceMm(const ConfigTable& table, const Prescription& prescription,
                        const ParaxialData& data, const CameraSettings& settings,
                        const Scene& scene) {
-    const FocusRequest request = focusRequest(table);
+    const FocusRequest request = focusRequest(table, settings);
     const char* key = keyOf(request);
     if (request.sensorShiftMm)
         return attempt(table, key,
@@ -82,6 +83,22 @@ LensSettings loadLensSettings(const ConfigTable& table, const Prescription& pres
     return settings;
 }
 
+/// The lens of the file that the table names, at the zoom position that it names, or else the
+/// first.
+Prescription prescriptionOf(const ConfigTable& table, LoadingScene& loading) {
+    const std::vector<Prescription> positions =
+        table.readFile("lens", [&](const std::filesystem::path& file) {
+            loading.files.push_back(file);
+            return loadPrescriptions(file);
+        });
+    if (!table.has("zoom")) return positions.front();
+    std::vector<std::string> names;
+    for (const Prescription& position : positions) names.push_back(position.zoomPosition);
+    if (names.front().empty()) table.fail("zoom", "this lens does not zoom");
+    const std::string wanted = table.choice("zoom", names);
+    return positions[static_cast<std::size_t>(std::ranges::find(names, wanted) - names.begin())];
+}
+
 FitSettings loadFitSettings(const ConfigTable& table, const std::string& representation,
                             const Prescription& prescription) {
     FitSettings settings;
@@ -99,15 +116,16 @@ FitSettings loadFitSettings(const ConfigTable& table, const std::string& represe
 std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, CameraSettings& camera,
                                           const LoadOptions& options, LoadingScene& loading,
                                           LoadedScene& loaded) {
-    const std::filesystem::path file = table.file("lens");
-    loading.files.push_back(file);
-    const Prescription prescription = loadPrescription(file, table.text("zoom", ""));
+    const Prescription prescription = prescriptionOf(table, loading);
+    const StatedData& stated = prescription.stated;
+    camera.worldFromLens =
+        placeCamera(table, {stated.focalLengthXMm, stated.focalLengthYMm}, camera, *loaded.scene);
     const std::string representation = table.choice(
         "representation", {"two-point", "sensor-state", "traced", "auto"}, "two-point");
     const FitSettings fitSettings = loadFitSettings(table, representation, prescription);
     const LensSettings settings = loadLensSettings(table, prescription, camera, *loaded.scene);
     table.finish();  // a mistyped key is reported now, and not after seconds of fitting
-    loaded.fNumber = settings.fNumber.value_or(prescription.stated.fNumber);
+    loaded.fNumber = settings.fNumber.value_or(stated.fNumber);
     loaded.focusDistance = 1e-3 * settings.focusDistanceMm;
     if (loaded.estimator.usesOuterPupil)
         camera.outerPupil = std::make_shared<OuterPupil>(makeTracedLens(prescription, settings));

@@ -16,9 +16,7 @@ Vec3 unitVector(const ConfigTable& table, std::string_view key) {
 using MakeLight = std::function<std::unique_ptr<Light>(BoundingSphere)>;
 
 MakeLight environmentFrom(const ConfigTable& table, LoadingScene& loading) {
-    // Wrapped in longitude by the light itself.
-    const auto image =
-        loadTexture(table.file("image"), ColorEncoding::sRgb, TextureWrap::clamp, loading);
+    const auto image = loadTexture(table, "image", TextureUse::radiance, loading);
     const auto scale = static_cast<float>(table.number("scale", Range::nonNegative(), 1.0));
     const Transform rotation = loadTransform(table, "rotation");
     const bool isRotation =
@@ -40,10 +38,12 @@ MakeLight spotFrom(const ConfigTable& table) {
     const Vec3 position = toFloat(place(table, "position"));
     const Vec3 direction = unitVector(table, "direction");
     const Spectrum intensity = color(table, "intensity", Range::nonNegative());
-    const auto outer = static_cast<float>(table.number("outer_angle", {0.01, 90.0}));
-    const auto inner = static_cast<float>(table.number("inner_angle", {0.0, outer}, 0.75 * outer));
-    return
-        [=](BoundingSphere) { return makeSpotLight(position, direction, intensity, inner, outer); };
+    const double outer = table.number("outer_angle", {0.01, 90.0});
+    const double inner = table.number("inner_angle", {0.0, outer}, 0.75 * outer);
+    return [=](BoundingSphere) {
+        return makeSpotLight(position, direction, intensity, static_cast<float>(inner),
+                             static_cast<float>(outer));
+    };
 }
 
 MakeLight lightFrom(const ConfigTable& table, LoadingScene& loading) {

@@ -1,4 +1,6 @@
 // [[material]], and what an MTL entry means.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "renderer/bsdfs.h"
@@ -12,11 +14,31 @@ constexpr float greyReflectance = 0.5f;
 
 Spectrum toSpectrum(Vec3 v) { return rgb(v.x, v.y, v.z); }
 
+/// Integers of a file are shares as they are.
+void checkShares(const Image& image, TextureUse use, const std::filesystem::path& file) {
+    const auto* values = std::get_if<std::vector<float>>(&image.pixels);
+    if (use == TextureUse::radiance || !values || image.isEncoded) return;
+    // As Texture reads them: colours; or of an opacity one channel, alpha where there is one.
+    const auto channels = static_cast<std::size_t>(image.channels),
+               width = static_cast<std::size_t>(image.width);
+    const std::size_t colors = channels % 2 == 0 ? channels - 1 : channels;
+    const bool isOpacity = use == TextureUse::opacity;
+    const std::size_t first = isOpacity && colors < channels ? colors : 0;
+    const std::size_t end = isOpacity ? first + 1 : colors;
+    for (std::size_t i = 0; i < values->size(); ++i) {
+        const std::size_t texel = i / channels, channel = i % channels;
+        const float value = (*values)[i];
+        if (channel < first || channel >= end || (value >= 0.0f && value <= 1.0f)) continue;
+        throw InputError(fmt::format("{}: texel ({}, {}) is {}: expected {} from 0 to 1",
+                                     file.string(), texel % width, texel / width, value,
+                                     isOpacity ? "an opacity" : "a reflectance"));
+    }
+}
+
 Texture textureOr(const ConfigTable& table, std::string_view key, Spectrum fallback,
                   LoadingScene& loading) {
     if (!table.has(key)) return Texture(fallback);
-    if (table.isText(key))
-        return *loadTexture(table.file(key), ColorEncoding::sRgb, TextureWrap::repeat, loading);
+    if (table.isText(key)) return *loadTexture(table, key, TextureUse::reflectance, loading);
     return Texture(color(table, key, Range::unit()));
 }
 
@@ -56,8 +78,7 @@ void loadOpacity(const ConfigTable& table, Material& material, LoadingScene& loa
     if (!table.has("opacity")) return;
     if (emits(material)) table.fail("opacity", "a material that emits cannot have an opacity");
     if (table.isText("opacity"))
-        material.opacity = *loadTexture(table.file("opacity"), ColorEncoding::linear,
-                                        TextureWrap::repeat, loading);
+        material.opacity = *loadTexture(table, "opacity", TextureUse::opacity, loading);
     else if (const double value = table.number("opacity", Range::unit()); value < 1.0)
         material.opacity = Texture(Spectrum(static_cast<float>(value)));
 }
@@ -81,9 +102,15 @@ bool isGlass(const ObjMaterial& m) {
     return (i == 4 || i == 6 || i == 7 || i == 9) && m.indexOfRefraction > 1.0f;
 }
 
+/// Metals have one colour all over.
+Spectrum metalColor(const ObjMaterial& m, LoadingScene& loading) {
+    if (m.diffuseMap.empty()) return reflectance(m.diffuse, m, "Kd", loading);
+    loading.notes.push_back("material '" + m.name + "' is a metal: only the mean of its map_Kd counts");
+    return loadTexture(m.diffuseMap, TextureUse::reflectance, loading)->average();
+}
+
 Texture diffuseTexture(const ObjMaterial& m, LoadingScene& loading) {
-    if (!m.diffuseMap.empty())
-        return *loadTexture(m.diffuseMap, ColorEncoding::sRgb, TextureWrap::repeat, loading);
+    if (!m.diffuseMap.empty()) return *loadTexture(m.diffuseMap, TextureUse::reflectance, loading);
     return Texture(reflectance(m.diffuse, m, "Kd", loading));
 }
 
@@ -93,9 +120,12 @@ std::unique_ptr<Bsdf> bsdfFromMtl(const ObjMaterial& m, LoadingScene& loading) {
     const bool isSpecular = maxComponent(m.specular) > 0.0f;
     const float ior = m.indexOfRefraction > 1.0f ? m.indexOfRefraction : 1.5f;
     if (m.metallic && *m.metallic >= 0.5f)
-        return makeConductor(reflectance(m.diffuse, m, "Kd", loading), m.roughness.value_or(0.5f));
-    if (isGlass(m))
+        return makeConductor(metalColor(m, loading), m.roughness.value_or(0.5f));
+    if (isGlass(m)) {
+        if (!m.diffuseMap.empty())
+            loading.notes.push_back("material '" + m.name + "' is glass: its map_Kd is ignored");
         return makeDielectric(m.indexOfRefraction, rgb(1, 1, 1), m.roughness.value_or(0.0f));
+    }
     if (isSpecular && isBlackDiffuse) {
         const bool isMirror = m.illuminationModel == 3 || m.illuminationModel == 5;
         const float roughness = isMirror ? 0.0f : roughnessFromShininess(m.shininess);
@@ -115,15 +145,17 @@ Material* addMaterial(LoadingScene& loading) {
 
 }  // namespace
 
-std::shared_ptr<const Texture> loadTexture(const std::filesystem::path& file,
-                                           ColorEncoding encoding, TextureWrap wrap,
+std::shared_ptr<const Texture> loadTexture(const std::filesystem::path& file, TextureUse use,
                                            LoadingScene& loading) {
-    const std::string key = file.string() +
-                            (encoding == ColorEncoding::sRgb ? "|srgb" : "|linear") +
-                            (wrap == TextureWrap::repeat ? "|repeat" : "|clamp");
-    std::shared_ptr<const Texture>& texture = loading.textures[key];
+    std::shared_ptr<const Texture>& texture = loading.textures[{file, use}];
     if (!texture) {
-        texture = std::make_shared<Texture>(readImage(file), encoding, wrap);
+        Image image = readImage(file);
+        checkShares(image, use, file);
+        // An environment light wraps its image in longitude by itself.
+        texture = std::make_shared<Texture>(
+            std::move(image),
+            use == TextureUse::opacity ? ColorEncoding::linear : ColorEncoding::sRgb,
+            use == TextureUse::radiance ? TextureWrap::clamp : TextureWrap::repeat);
         loading.files.push_back(file);
     }
     return texture;
@@ -167,8 +199,7 @@ const Material* addObjMaterial(const ObjMaterial& m, LoadingScene& loading) {
     if (emits(*material)) {
         loading.notes.push_back("material '" + m.name + "' emits: its opacity is ignored");
     } else if (!m.opacityMap.empty()) {
-        material->opacity =
-            *loadTexture(m.opacityMap, ColorEncoding::linear, TextureWrap::repeat, loading);
+        material->opacity = *loadTexture(m.opacityMap, TextureUse::opacity, loading);
     } else {
         material->opacity = Texture(Spectrum(m.opacity));
     }

@@ -24,9 +24,14 @@ Mesh latheFrom(const ConfigTable& table) {
     std::vector<Vec2> profile;
     for (const std::vector<double>& row : table.rows("profile", 2, {-1e6, 1e6}))
         profile.push_back({static_cast<float>(row[0]), static_cast<float>(row[1])});
-    return makeLathe(profile, static_cast<int>(table.integer("segments", segmentRange, 64)),
-                     static_cast<int>(table.integer("subdivisions", {1, 256}, 1)),
-                     static_cast<float>(table.number("crease_angle", {0, 180}, 40)));
+    const auto segments = static_cast<int>(table.integer("segments", segmentRange, 64));
+    const auto subdivisions = static_cast<int>(table.integer("subdivisions", {1, 256}, 1));
+    const auto creaseDegrees = static_cast<float>(table.number("crease_angle", {0, 179}, 40));
+    try {
+        return makeLathe(profile, segments, subdivisions, creaseDegrees);
+    } catch (const std::invalid_argument& error) {
+        table.fail("profile", error.what());
+    }
 }
 
 struct Shape {
@@ -137,7 +142,10 @@ void placeMesh(const DressedMesh& mesh, const Transform& worldFromMesh, const Co
 DressedMesh loadMesh(const ConfigTable& table, LoadingScene& loading) {
     if (table.has("file") == table.has("shape"))
         table.fail("file", "a mesh needs either a file or a shape");
-    DressedMesh mesh = table.has("file") ? addModelFile(table.file("file"), loading)
+    const auto addModelOf = [&](const std::filesystem::path& file) {
+        return addModelFile(file, loading);
+    };
+    DressedMesh mesh = table.has("file") ? table.readFile("file", addModelOf)
                                          : addMesh(shapeFrom(table), {}, loading);
     Mesh& geometry = loading.parts.meshes[mesh.index];
     if (mesh.materials.empty()) mesh.materials = dress(geometry, {}, loading);

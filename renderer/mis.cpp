@@ -47,7 +47,7 @@ std::optional<TechniqueSet> TechniqueSet::parse(std::string_view text) {
         const std::string_view::size_type comma = text.find(',');
         std::string_view name = text.substr(0, comma);
         const std::optional<int> s = takeNumber(name, 's'), t = takeNumber(name, 't');
-        const bool isShort = s && t && *s + *t < 2;  // a path has two vertices at least
+        const bool isShort = s && t && edgesOf({*s, *t}) < 1;  // a path has two vertices at least
         const bool isKnown = (s || t) && name.empty() && t.value_or(1) >= 1 && !isShort;
         if (!isKnown) return {};
         if (s && t)
@@ -62,6 +62,18 @@ std::optional<TechniqueSet> TechniqueSet::parse(std::string_view text) {
         }
         text.remove_prefix(comma + 1);
     }
+}
+
+std::vector<TechniqueName> TechniqueSet::names() const {
+    std::vector<TechniqueName> result;
+    for (const Technique& technique : single_)
+        result.push_back({nameOf(technique), edgesOf(technique)});
+    // The shortest paths have one vertex of the other kind at most.
+    for (const int s : allWithS_)
+        result.push_back({"s" + std::to_string(s), edgesOf({s, s == 0 ? 2 : 1})});
+    for (const int t : allWithT_)
+        result.push_back({"t" + std::to_string(t), edgesOf({t == 1 ? 1 : 0, t})});
+    return result;
 }
 
 void TechniqueSet::chart() {

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace etendue {
 
@@ -21,6 +22,16 @@ struct Technique {
 
 /// "s2t1".
 std::string nameOf(Technique technique);
+/// Of the paths that it makes.
+constexpr std::int64_t edgesOf(Technique technique) {
+    return std::int64_t{technique.s} + technique.t - 1;
+}
+
+/// One of a list of techniques: "s2t1", "t1" or "s0".
+struct TechniqueName {
+    std::string text;
+    std::int64_t fewestEdges;  // of the paths that its techniques make
+};
 
 /// Which techniques an estimator may use.
 class TechniqueSet {
@@ -40,6 +51,8 @@ public:
                     : isListed(technique));
     }
     bool isAll() const { return isAll_; }
+    /// Those that were parsed, each once.
+    std::vector<TechniqueName> names() const;
     /// Any technique with t ≥ 2, up to paths of `maxDepth` edges.
     bool needsCameraWalk(int maxDepth) const;
     /// Any technique with s ≥ 2, or with t = 1.

@@ -1,8 +1,6 @@
 #include "renderer/scene_loader.h"
 
 #include <cmath>
-#include <numbers>
-#include <stdexcept>
 
 #include "renderer/content_hash.h"
 #include "renderer/scene_parts.h"
@@ -58,7 +56,30 @@ FilmSettings loadFilm(const ConfigTable& table) {
     return film;
 }
 
-void loadEstimator(const ConfigTable& table, LoadedScene& loaded) {
+/// Those that `techniques` names. Of names beyond `maxDepth` it is an error if there are no others,
+/// since the picture would be black, and else worth a note.
+TechniqueSet loadTechniques(const ConfigTable& table, int maxDepth, LoadingScene& loading) {
+    const auto set = TechniqueSet::parse(table.text("techniques"));
+    if (!set)
+        table.fail("techniques",
+                   "expected names like s2t1, t1 or s0, separated by commas: s vertices from "
+                   "the light, t ≥ 1 from the camera");
+    const std::vector<TechniqueName> names = set->names();
+    std::string beyond;
+    std::size_t count = 0;
+    for (const auto& [name, fewestEdges] : names) {
+        if (fewestEdges <= maxDepth) continue;
+        ++count;
+        beyond += (beyond.empty() ? "" : ", ") + name + " needs " + std::to_string(fewestEdges);
+    }
+    if (count == 0) return *set;
+    beyond = "max_depth = " + std::to_string(maxDepth) + " edges: " + beyond;
+    if (count == names.size()) table.fail("techniques", "nothing is within " + beyond);
+    loading.notes.push_back("estimator.techniques: beyond " + beyond);
+    return *set;
+}
+
+void loadEstimator(const ConfigTable& table, LoadingScene& loading, LoadedScene& loaded) {
     EstimatorSettings& e = loaded.estimator;
     e.kind = table.choice("kind", estimatorKinds(), e.kind);
     e.maxDepth = static_cast<int>(table.integer("max_depth", {1, 10000}, e.maxDepth));
@@ -70,36 +91,12 @@ void loadEstimator(const ConfigTable& table, LoadedScene& loaded) {
         table.fail("pupil_sampling", "\"outer\" is for kind = \"lt\"");
     if (table.has("techniques")) {
         if (e.kind != "bdpt") table.fail("techniques", "is for kind = \"bdpt\"");
-        const auto set = TechniqueSet::parse(table.text("techniques"));
-        if (!set)
-            table.fail("techniques",
-                       "expected names like s2t1, t1 or s0, separated by commas: s vertices from "
-                       "the light, t ≥ 1 from the camera");
-        e.techniques = *set;
+        e.techniques = loadTechniques(table, e.maxDepth, loading);
     }
     if (table.choice("sampler", {"independent", "sobol"}, "independent") == "sobol")
         loaded.sampler = Sampler::sobol;
     loaded.samples = static_cast<int>(table.integer("samples", {1, 1 << 30}, loaded.samples));
     table.finish();
-}
-
-/// Where nobody placed a camera: outside the scene's bounds, from the front, a little from the
-/// right and above, with all of it in view.
-void addAutomaticCamera(LoadedScene& loaded) {
-    constexpr double fovDegrees = 35.0;
-    const BoundingSphere bounds = loaded.scene->bounds();
-    CameraSettings settings;
-    settings.width = loaded.film.width;
-    settings.height = loaded.film.height;
-    const double narrow = std::min(1.0, static_cast<double>(settings.height) / settings.width);
-    const double halfTangent = narrow * std::tan(fovDegrees * std::numbers::pi / 360.0);
-    const double distance = bounds.radius * std::sqrt(1.0 + 1.0 / (halfTangent * halfTangent));
-    const Vec3d center = toDouble(bounds.center);
-    settings.worldFromLens =
-        lookAt(center + normalize(Vec3d{0.45, 0.35, 1.0}) * distance, center, {0, 1, 0});
-    const double focalMm =
-        0.5 * settings.sensorWidthMm / std::tan(fovDegrees * std::numbers::pi / 360.0);
-    loaded.camera = std::make_unique<Camera>(makePinhole(focalMm), settings);
 }
 
 bool anythingEmits(const LoadingScene& loading) {
@@ -132,7 +129,7 @@ void addSoftLight(LoadingScene& loading) {
     const auto sky = std::make_shared<const Texture>(softSky());
     loading.parts.lights.push_back(
         [sky](BoundingSphere bounds) { return makeEnvironmentLight(sky, 1.0f, {}, bounds); });
-    loading.notes.push_back("nothing emits light: a soft sky was added");
+    loading.notes.emplace_back("nothing emits light: a soft sky was added");
 }
 
 }  // namespace
@@ -152,27 +149,25 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     const ConfigTable root = config.root();
     root.files("include");
     loaded.film = loadFilm(root.table("film"));
-    loadEstimator(root.table("estimator"), loaded);
+    loadEstimator(root.table("estimator"), loading, loaded);
     if (options.samples) loaded.samples = *options.samples;
     loadMaterials(root.tables("material"), loading);
     if (isModel) addModel(file, loading);
     loadMeshes(root.tables("mesh"), root.tables("instance"), loading);
     loadLights(root.tables("light"), loading);
-    const bool hasCamera = root.has("camera");
+    const ConfigTable camera = root.table("camera");
     root.finish();
     if (!anythingEmits(loading)) {
         if (isModel)
             addSoftLight(loading);
         else
-            loading.notes.push_back("nothing in the scene emits light: the picture will be black");
+            loading.notes.emplace_back(
+                "nothing in the scene emits light: the picture will be black");
     }
     loaded.scene = std::make_unique<Scene>(std::move(loading.parts), options.threads);
     // Last, since it may focus on the scene, and since fitting its lens takes time: by now all
     // other input is known to be good.
-    if (hasCamera)
-        loadCamera(root.table("camera"), options, loading, loaded);
-    else
-        addAutomaticCamera(loaded);
+    loadCamera(camera, options, loading, loaded);
     if (loaded.camera->settings().isDispersive || loading.isDispersive)
         loaded.film.color = FilmColor::xyz;
     if (loaded.estimator.usesOuterPupil && !loaded.camera->settings().outerPupil)

@@ -59,7 +59,8 @@ struct LoadOptions {
     bool disperses = true;            // camera.dispersion where no file and no override says it
     std::optional<int> samples = {};  // in place of estimator.samples; no part of the hash
     /// A file whose [camera] is looked through in place of the scene's, from the scene's `from`,
-    /// `to` and `up` unless it has its own; empty: none.
+    /// `to` and `up` unless it has its own; where neither has any, it sees the whole scene. Empty:
+    /// none.
     std::filesystem::path camera = {};
 
     /// Overrides the picture's size.

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/config.h"
@@ -12,13 +13,16 @@
 
 namespace etendue {
 
+/// What an image says. Shares of light lie in [0, 1].
+enum class TextureUse { reflectance, opacity, radiance };
+
 /// What loading gathers on its way.
 struct LoadingScene {
     SceneParts parts;
     std::vector<std::string> notes;
     std::vector<std::filesystem::path> files;          // every file read, for the hash
     std::map<std::string, const Material*> materials;  // the scene file's own, by name
-    std::map<std::string, std::shared_ptr<const Texture>> textures;  // by path and encoding
+    std::map<std::pair<std::filesystem::path, TextureUse>, std::shared_ptr<const Texture>> textures;
     const Material* defaultMaterial = nullptr;
     bool isDispersive = false;  // some material is
 };
@@ -27,10 +31,13 @@ struct LoadingScene {
 void loadCamera(const ConfigTable& table, const LoadOptions& options, LoadingScene& loading,
                 LoadedScene& loaded);
 /// Lens axes in the world: +z toward `to`, +y up as far as it can be, +x to the viewer's left
-/// (docs/camera.md, "Which way is up").
-Transform lookAt(Vec3d from, Vec3d to, Vec3d up);
+/// (docs/camera.md, "Which way is up"). A table with neither `from` nor `to` stands where a lens of
+/// these focal lengths (along x and y), without distortion and focused at infinity, sees the whole
+/// scene.
+Transform placeCamera(const ConfigTable& table, const Eigen::Vector2d& focalMm,
+                      const CameraSettings& frame, const Scene& scene);
 
-/// [camera] lens = …; sets the camera's outer pupil if the estimator asks for it.
+/// [camera] lens = …; places the camera, and sets its outer pupil if the estimator asks for it.
 std::shared_ptr<const LensModel> loadLens(const ConfigTable& table, CameraSettings& camera,
                                           const LoadOptions& options, LoadingScene& loading,
                                           LoadedScene& loaded);
@@ -44,9 +51,15 @@ const Material* findMaterial(const ConfigTable& table, const std::string& key,
 const Material* addObjMaterial(const ObjMaterial& material, LoadingScene& loading);
 /// The grey of everything that names no material.
 const Material* defaultMaterial(LoadingScene& loading);
-std::shared_ptr<const Texture> loadTexture(const std::filesystem::path& file,
-                                           ColorEncoding encoding, TextureWrap wrap,
+/// Throws InputError as readImage does, and for a share that is none: a float image may hold any.
+std::shared_ptr<const Texture> loadTexture(const std::filesystem::path& file, TextureUse use,
                                            LoadingScene& loading);
+/// Of the file that the key names.
+inline std::shared_ptr<const Texture> loadTexture(const ConfigTable& table, std::string_view key,
+                                                  TextureUse use, LoadingScene& loading) {
+    return table.readFile(
+        key, [&](const std::filesystem::path& file) { return loadTexture(file, use, loading); });
+}
 Spectrum color(const ConfigTable& table, std::string_view key, Range range);
 
 /// [[mesh]] and [[instance]]

@@ -108,7 +108,8 @@ EstimatorSettings settingsOf(const CommonPathsSettings& s) {
     result.lightPaths = 1;
     for (const Contender* contender : {&s.self, &s.other})
         if (const auto& technique = contender->technique)
-            result.maxDepth = std::min(result.maxDepth, technique->s + technique->t - 1);
+            result.maxDepth =
+                static_cast<int>(std::min<std::int64_t>(result.maxDepth, edgesOf(*technique)));
     if (s.self.technique) result.techniques = *TechniqueSet::parse(nameOf(*s.self.technique));
     return result;
 }

@@ -163,6 +163,7 @@ TEST_CASE("ConfigTable: values of another type are refused") {
     const auto text = [](const ConfigTable& t) { t.text("x"); };
     const auto textOr = [](const ConfigTable& t) { t.text("x", "fallback"); };
     const auto choice = [](const ConfigTable& t) { t.choice("x", {"pinhole", "thin-lens"}); };
+    const auto choiceOfNone = [](const ConfigTable& t) { t.choice("x", {}); };
     const auto choiceOr = [](const ConfigTable& t) { t.choice("x", {"a"}, "a"); };
     const auto texts = [](const ConfigTable& t) { t.texts("x"); };
     const auto file = [](const ConfigTable& t) { t.file("x"); };
@@ -187,6 +188,8 @@ TEST_CASE("ConfigTable: values of another type are refused") {
         {"'thin_lens'", choice,
          ": expected one of \"pinhole\", \"thin-lens\", got \"thin_lens\"; did you mean "
          "'thin-lens'?"},
+        {"'a'", choiceOfNone,
+         ": expected one of the names defined here (there are none), got \"a\""},
         {"''", choice, ": expected one of \"pinhole\", \"thin-lens\", got \"\""},
         {"\"\\u001b\\n\"", choice,
          ": expected one of \"pinhole\", \"thin-lens\", got \"\\x1b\\n\""},
@@ -204,6 +207,23 @@ TEST_CASE("ConfigTable: values of another type are refused") {
         {"[1]", tables, "[0]: expected a table, got 1"},
         {"[{}, 1]", tables, "[1]: expected a table, got 1"},
     });
+}
+
+TEST_CASE("ConfigTable: an error in a file that a key names ends with who named it") {
+    const ScratchFolder folder("named");
+    folder.write("a.obj", "");
+    const Config config = Config::parse("[[mesh]]\nfile = 'a.obj'\n", folder.path() / "scene.toml");
+    const ConfigTable mesh = config.root().tables("mesh")[0];
+    const auto fail = [](const std::filesystem::path&) -> int {
+        throw InputError("a.obj:7: no faces", ExitCode::missingFile);
+    };
+    CHECK(errorMessage([&] { mesh.readFile("file", fail); }) ==
+          "a.obj:7: no faces (named by " + (folder.path() / "scene.toml").string() +
+              ":2, mesh[0].file)");
+    CHECK(errorCode([&] { mesh.readFile("file", fail); }) == ExitCode::missingFile);
+    CHECK(mesh.readFile("file", [](const std::filesystem::path& file) {
+        return file.filename().string();
+    }) == "a.obj");
 }
 
 TEST_CASE("ConfigTable: finish names the first key that nothing has asked for") {
@@ -279,6 +299,21 @@ TEST_CASE("ConfigTable: fail speaks at the key's line, or at the table's") {
     CHECK(errorMessage([&] { t.fail("b", "is odd"); }) == "scene.toml:2: t.b: is odd");
     CHECK(errorMessage([&] { t.fail("", "is odd"); }) == "scene.toml:2: t: is odd");
     CHECK(errorMessage([] { parsed("").root().fail("", "is odd"); }) == "scene.toml:1: is odd");
+}
+
+TEST_CASE("ConfigTable: failEntry speaks at the line of a text of several, with its index") {
+    const ConfigTable t = parsed("a = [\"x\",\n\"y\"]\nb = \"x\"\n").root();
+    CHECK(errorMessage([&] { t.failEntry("a", 1, "is odd"); }) == "scene.toml:2: a[1]: is odd");
+    CHECK(errorMessage([&] { t.failEntry("b", 0, "is odd"); }) == "scene.toml:3: b: is odd");
+}
+
+TEST_CASE("ConfigTable: failNamedFile says where a file is named, or could have been") {
+    const ConfigTable t = parsed("\n[t]\na = \"x.obj\"\n").root().table("t");
+    const InputError error("x.obj:7: no faces", ExitCode::missingFile);
+    CHECK(errorMessage([&] { t.failNamedFile("a", error); }) ==
+          "x.obj:7: no faces (named by scene.toml:3, t.a)");
+    CHECK(errorMessage([&] { t.failNamedFile("b", error); }) ==
+          "x.obj:7: no faces (named by scene.toml:2, t.b)");
 }
 
 TEST_CASE("ConfigTable: files are found from the folder of the file that names them") {

@@ -186,9 +186,9 @@ TEST_CASE("makeLathe: bad arguments are refused") {
     CHECK_THROWS_WITH_AS(lathe({{1, 0}}), "lathe: the profile needs at least two points",
                          std::invalid_argument);
     CHECK_THROWS_WITH_AS(lathe({{1, 0}, {-1, 1}}),
-                         "lathe: profile point 2 has the radius -1.000000, must not be negative",
+                         "lathe: profile[1] has the radius -1.000000, must not be negative",
                          std::invalid_argument);
-    CHECK_THROWS_WITH_AS(lathe({{nan, 0}, {1, 1}}), "lathe: profile point 1 is not finite",
+    CHECK_THROWS_WITH_AS(lathe({{nan, 0}, {1, 1}}), "lathe: profile[0] is not finite",
                          std::invalid_argument);
     CHECK_THROWS_AS(lathe({{1, 0}, {1, std::numeric_limits<float>::infinity()}}),
                     std::invalid_argument);

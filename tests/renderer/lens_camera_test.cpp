@@ -115,7 +115,7 @@ TEST_CASE("Scene: what a lens cannot be set to is an error at its key") {
     CHECK(has(error("focus_distance = 0.2\n"), "scene.toml:10: camera.focus_distance"));
     CHECK(has(error("blades = 2\n"), "scene.toml:10: camera.blades"));
     CHECK(has(error("representation = \"two-pint\"\n"), "two-point"));
-    CHECK(has(error("zoom = \"57 mm\"\n"), "57 mm"));
+    CHECK(has(error("zoom = \"57 mm\"\n"), "camera.zoom: this lens does not zoom"));
     CHECK(has(error("fov = 40\n"), "camera.fov"));
     CHECK(error("f_number = 5.6\nblades = 7\nblade_rotation = 10\nblade_roundness = 0.3\n") == "");
 }
@@ -196,6 +196,13 @@ TEST_CASE("Scene: what cannot be focused on is named") {
     CHECK(errorWith("focus_pixel = [36, 24]\n").find("nothing to be seen") != std::string::npos);
     CHECK(errorWith("focus_point = [0, 1, 3.95]\n").find("focus") != std::string::npos);
     CHECK(errorWith("sensor_shift_mm = 300\n").find("so far back") != std::string::npos);
+}
+
+TEST_CASE("Scene: a zoom position that the lens does not have is told at its key") {
+    const TemporaryFolder folder;
+    CHECK(errorOf(folder, sceneWith("zoom-57-143mm.toml", "zoom = \"57\"\n")) ==
+          (folder / "scene.toml").string() +
+              ":10: camera.zoom: expected one of \"57 mm\", \"143 mm\", got \"57\"");
 }
 
 TEST_CASE("Scene: a sensor off the axis sees the part of the picture that lies there") {

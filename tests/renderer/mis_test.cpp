@@ -97,3 +97,20 @@ TEST_CASE("TechniqueSet: names are read, and what is none is refused") {
          {"", ",", "s", "t0", "s0t1", "s-1t3", "s1t1,", "x1", "s1t1 ", "t1s1", "s99999999999t1"})
         CHECK_FALSE(TechniqueSet::parse(wrong));
 }
+
+TEST_CASE("TechniqueSet: its names know their shortest paths, however long") {
+    const auto edgesOfOnly = [](const char* text) {
+        const std::vector<TechniqueName> names = TechniqueSet::parse(text)->names();
+        REQUIRE(names.size() == 1);
+        CHECK(names[0].text == text);
+        return names[0].fewestEdges;
+    };
+    CHECK(edgesOfOnly("s2t1") == 2);
+    CHECK(edgesOfOnly("s0") == 1);
+    CHECK(edgesOfOnly("s7") == 7);
+    CHECK(edgesOfOnly("t1") == 1);
+    CHECK(edgesOfOnly("t7") == 6);
+    REQUIRE(TechniqueSet::parse("s2147483647t2147483647"));
+    CHECK(edgesOfOnly("s2147483647t2147483647") == 4294967293);
+    CHECK(TechniqueSet().names().empty());
+}

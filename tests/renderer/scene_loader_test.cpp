@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/scenes.h"
@@ -26,6 +27,10 @@ const std::vector<BadScene> badScenes = {
     {"an unknown filter", "[film]\nfilter = \"gausian\"\n", {"scene.toml:2", "gaussian"}},
     {"an unknown estimator", "[estimator]\nkind = \"ptt\"\n", {"scene.toml:2", "pt"}},
     {"negative samples", "[estimator]\nsamples = -4\n", {"scene.toml:2", "estimator.samples"}},
+    {"techniques of longer paths than there are",
+     "[estimator]\nkind = \"bdpt\"\ntechniques = \"s9t99,t14,s13\"\n",
+     {"scene.toml:3: estimator.techniques: nothing is within max_depth = 12 edges: s9t99 needs "
+      "107, s13 needs 13, t14 needs 13"}},
     {"a camera without a place", "[camera]\nto = [0, 0, 1]\n", {"camera.from"}},
     {"a camera that looks nowhere",
      "[camera]\nfrom = [1, 2, 3]\nto = [1, 2, 3]\n",
@@ -47,6 +52,14 @@ const std::vector<BadScene> badScenes = {
      "[camera]\nmodel = \"thin-lens\"\nfrom = [0, 0, 0]\nto = [0, 0, 1]\nf_number = "
      "2\nfocus_distance = 0.1\n",
      {"scene.toml:6", "camera.focus_distance", "0.2"}},
+    {"focus beyond the frame",
+     "[camera]\nmodel = \"thin-lens\"\nfrom = [0, 0, 0]\nto = [0, 0, 1]\nf_number = "
+     "2\nfocus_pixel = [1000, 1]\n",
+     {"scene.toml:6: camera.focus_pixel: must lie in the frame of 720 × 480 pixels"}},
+    {"focus above the frame",
+     "[camera]\nmodel = \"thin-lens\"\nfrom = [0, 0, 0]\nto = [0, 0, 1]\nf_number = "
+     "2\nfocus_pixel = [1, -1]\n",
+     {"scene.toml:6: camera.focus_pixel: must lie in the frame of 720 × 480 pixels"}},
     {"fov and focal length",
      "[camera]\nfrom = [0, 0, 0]\nto = [0, 0, 1]\nfov = 40\nfocal_length_mm = 50\n",
      {"scene.toml:4", "fov"}},
@@ -100,6 +113,12 @@ const std::vector<BadScene> badScenes = {
     {"an unknown material",
      "[[material]]\nname = \"red\"\n[[mesh]]\nshape = \"box\"\nmaterial = \"rde\"\n",
      {"scene.toml:5", "red"}},
+    {"a material where there is none",
+     "[[mesh]]\nshape = \"box\"\nmaterial = \"glas\"\n",
+     {"scene.toml:3: mesh[0].material: ", "(there are none), got \"glas\""}},
+    {"an instance where no mesh has a name",
+     "[[mesh]]\nshape = \"box\"\n[[instance]]\nmesh = \"crate\"\n",
+     {"scene.toml:4: instance[0].mesh: ", "(there are none), got \"crate\""}},
     {"a scale of zero",
      "[[mesh]]\nshape = \"box\"\ntransform = [{scale = 0}]\n",
      {"scene.toml:3", "scale", "zero"}},
@@ -123,7 +142,13 @@ const std::vector<BadScene> badScenes = {
      {"scene.toml:5", "crate"}},
     {"a lathe of one point",
      "[[mesh]]\nshape = \"lathe\"\nprofile = [[1, 0]]\n",
-     {"scene.toml:2", "shape"}},
+     {"scene.toml:3", "mesh[0].profile"}},
+    {"a lathe of a negative radius",
+     "[[mesh]]\nshape = \"lathe\"\nsegments = 8\nprofile = [[1, 0], [-1, 1]]\n",
+     {"scene.toml:4: mesh[0].profile: ", "profile[1] has the radius -1"}},
+    {"a lathe that folds over",
+     "[[mesh]]\nshape = \"lathe\"\nprofile = [[1, 0], [1, 1]]\ncrease_angle = 180\n",
+     {"scene.toml:4: mesh[0].crease_angle"}},
     {"an unknown light", "[[light]]\ntype = \"lamp\"\n", {"scene.toml:2", "type"}},
     {"negative intensity",
      "[[light]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = [-1, 1, 1]\n",
@@ -330,5 +355,106 @@ TEST_CASE("Scene loader: an environment with negative light is refused at the li
         CAPTURE(message);
         CHECK(message.find("scene.toml:3") != std::string::npos);
         CHECK(message.find("(1, 0)") != std::string::npos);
+    }
+}
+
+TEST_CASE("Scene loader: a float image is no reflectance or opacity where it leaves 0 to 1") {
+    const TemporaryFolder folder;
+    const auto write = [&](const char* name, std::vector<float> pixels) {
+        writeExr(folder / name, {2, 1, 0, 0, 2, 1}, {{{"R", "G", "B"}, std::move(pixels)}}, {});
+    };
+    write("share.exr", {0, 1, 0.5f, 1, 0, 0});
+    write("bright.exr", {1, 1, 1, 1, 1.5f, 1});
+    write("negative.exr", {0, 0, 0, -0.25f, 0, 0});
+    const auto load = [&](const std::string& material) {
+        return loadScene(folder.write("scene.toml", "[[material]]\nname = \"m\"\n" + material +
+                                                        "[[mesh]]\nshape = \"sphere\"\n"
+                                                        "material = \"m\"\n"),
+                         {{}, 1});
+    };
+    for (const char* key : {"color", "opacity"}) {
+        CAPTURE(key);
+        load(std::string(key) + " = \"share.exr\"\n");
+        for (const char* image : {"bright.exr", "negative.exr"}) {
+            if (std::string(key) == "opacity" && std::string(image) == "bright.exr") continue;
+            CAPTURE(image);
+            try {
+                load(std::string(key) + " = \"" + image + "\"\n");
+                FAIL_CHECK("accepted");
+            } catch (const InputError& error) {
+                const std::string message = error.what();
+                CAPTURE(message);
+                CHECK(message.find(image) != std::string::npos);
+                CHECK(message.find("texel (1, 0)") != std::string::npos);
+            }
+        }
+    }
+    // Of an opacity its first channel counts.
+    load("opacity = \"bright.exr\"\n");
+}
+
+TEST_CASE("Scene loader: of a metal's image in an MTL the mean counts, with a note") {
+    const TemporaryFolder folder;
+    writeExr(folder / "red.exr", {2, 1, 0, 0, 2, 1}, {{{"R", "G", "B"}, {1, 0, 0, 0.5f, 0, 0}}},
+             {});
+    folder.write("ball.mtl", "newmtl m\nmap_Kd red.exr\nPm 1\n");
+    const auto file = folder.write(
+        "ball.obj",
+        "mtllib ball.mtl\nusemtl m\nv -1 0 -1\nv 1 0 -1\nv 1 0 1\nvt 0 0\nf 3/1 2/1 1/1\n");
+    const LoadedScene loaded = loadScene(file, {{}, 1});
+    CHECK(std::any_of(loaded.notes.begin(), loaded.notes.end(), [](const std::string& note) {
+        return note.find("map_Kd") != std::string::npos;
+    }));
+    const auto point = loaded.scene->closestHit({{0.5f, 1, -0.5f}, {0, -1, 0}});
+    REQUIRE(point);
+    const Spectrum albedo =
+        point->material->bsdf->albedo(BsdfContext{point->uv, Transport::radiance});
+    CHECK(albedo[0] > 0.6f);
+    CHECK(albedo[0] < 0.9f);
+    CHECK(albedo[1] < 0.2f);
+}
+
+TEST_CASE("Scene loader: a spot may be sharp at any angle") {
+    CHECK_NOTHROW(
+        sceneFromText(std::string(ballScene) +
+                      "[[light]]\ntype = \"spot\"\nposition = [0, 2, 0]\ndirection = [0, -1, "
+                      "0]\nintensity = [1, 1, 1]\nouter_angle = 25.3\ninner_angle = 25.3\n"));
+}
+
+TEST_CASE("Scene loader: techniques of longer paths than there are get a note beside others") {
+    const auto notesFor = [](const char* techniques) {
+        return sceneFromText(ballScene, {"estimator.kind=bdpt", "estimator.max_depth=4",
+                                         "estimator.techniques=" + std::string(techniques)})
+            .notes;
+    };
+    CHECK(notesFor("s0,t1,s4,t5,s3t2").empty());
+    const std::vector<std::string> notes = notesFor("s0,s5,t6,s3t3");
+    REQUIRE(notes.size() == 1);
+    CHECK(notes[0] ==
+          "estimator.techniques: beyond max_depth = 4 edges: s3t3 needs 5, s5 needs 5, t6 needs 5");
+}
+
+TEST_CASE("Scene loader: an error in a file that the scene names says where it is named") {
+    const TemporaryFolder folder;
+    folder.write("a.txt", "name = 1\n");
+    const auto error = [&](const std::string& text) {
+        try {
+            loadScene(folder.write("scene.toml", text), {{}, 1});
+        } catch (const InputError& e) {
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    const std::string named = " (named by " + (folder / "scene.toml").string() + ":2, ";
+    for (const auto& [text, key] : std::vector<std::pair<const char*, const char*>>{
+             {"[camera]\nlens = \"a.txt\"\n", "camera.lens"},
+             {"[[mesh]]\nfile = \"a.txt\"\n", "mesh[0].file"},
+             {"[[light]]\nimage = \"a.txt\"\ntype = \"environment\"\n", "light[0].image"},
+             {"[[material]]\ncolor = \"a.txt\"\nname = \"m\"\n", "material[0].color"},
+             {"[[material]]\nopacity = \"a.txt\"\nname = \"m\"\n", "material[0].opacity"}}) {
+        const std::string message = error(text);
+        CAPTURE(message);
+        CHECK(message.starts_with((folder / "a.txt").string()));
+        CHECK(message.ends_with(named + key + ")"));
     }
 }

@@ -25,13 +25,15 @@ public:
     /// `value` is not weighted yet. May run at the same time for different pixels.
     void add(int x, int y, Technique technique, const Spectrum& value, float weight);
 
-    /// "s1t2.R" …, then "s1t2.unweighted.R" …, for each technique that found anything.
+    /// "s1t2.R" …, then "s1t2.unweighted.R" …, for each technique that found anything;
+    /// where none did, those of s0t2, black.
     std::vector<ExrChannels> channels(std::uint64_t samples, std::uint64_t lightPaths) const;
 
 private:
     /// Six sums a pixel: weighted, then not. Made when a technique first finds anything.
     using Sums = std::vector<double>;
     Sums& sumsOf(Technique technique);
+    Sums noSums() const;
 
     FrameWindow window_;
     FilmColor color_;

@@ -238,10 +238,18 @@ TEST_CASE("Render: the weighted pictures of all techniques sum to the picture") 
         CHECK(sum[i] == doctest::Approx(static_cast<double>(picture[i])).epsilon(1e-5));
 }
 
+TEST_CASE("Render: where no technique brings light there is a black picture of one") {
+    const TechniqueImages techniques({2, 1, 0, 0, 2, 1});
+    const std::vector<ExrChannels> channels = techniques.channels(4, 0);
+    REQUIRE(channels.size() == 2);
+    CHECK(channels[0].names == std::vector<std::string>{"s0t2.R", "s0t2.G", "s0t2.B"});
+    CHECK(channels[0].pixels == std::vector<float>(6));
+}
+
 TEST_CASE(
     "Render: what is not finite is counted in the film's state too, and the first are named") {
     const std::string scene = std::string(ballScene) +
-                              "[[light]]\ntype = \"point\"\nposition = [0, 2, 2]\nintensity = "
+                              "[[light]]\ntype = \"point\"\nposition = [0, 0.2, 1.2]\nintensity = "
                               "[1e30, 1e30, 1e30]\n";
     for (const char* estimator : {"pt", "lt", "bdpt"}) {
         CAPTURE(estimator);

@@ -329,6 +329,16 @@ std::optional<ExrChannels> readExrChannels(const std::filesystem::path& file,
     });
 }
 
+std::optional<FrameWindow> readExrWindow(const std::filesystem::path& file) {
+    return blamingFile(file, [&]() -> std::optional<FrameWindow> {
+        OpenFile open(file);
+        if (std::string_view(open.input().format_name()) != "openexr") return std::nullopt;
+        const OIIO::ImageSpec& spec = open.input().spec();
+        return FrameWindow{spec.full_width, spec.full_height, spec.x,
+                           spec.y,          spec.width,       spec.height};
+    });
+}
+
 Bytes encodeExr(const std::filesystem::path& file, const FrameWindow& window,
                 const std::vector<ExrChannels>& layers, const Metadata& metadata,
                 ExrCompression compression) {

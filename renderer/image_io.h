@@ -60,6 +60,10 @@ struct FrameWindow {
     friend bool operator==(const FrameWindow&, const FrameWindow&) = default;
 };
 
+/// Where the pixels of an EXR lie; none of a file of another format, which does not say. Throws
+/// InputError as readImage does.
+std::optional<FrameWindow> readExrWindow(const std::filesystem::path& file);
+
 enum class ExrCompression { none, zip };
 
 /// The bytes of the file that writeExr() writes, or those of one without compression: noise does

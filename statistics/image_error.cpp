@@ -33,6 +33,18 @@ double sumOf(const Picture& picture) {
     return std::accumulate(picture.begin(), picture.end(), 0.0);
 }
 
+/// Sums over all values.
+struct Sums {
+    double picture = 0.0, reference = 0.0;
+};
+
+/// In units of the reference's sum. If that is 0, nothing is a share of it, and this is NaN; but
+/// the nothing of a picture that is black, too, is 0.
+double asShare(double value, const Sums& sums) {
+    if (sums.reference != 0.0) return value / sums.reference;
+    return sums.picture == 0.0 && value == 0.0 ? 0.0 : std::nan("");
+}
+
 double meanOf(std::span<const double> values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -47,12 +59,11 @@ ImageErrors imageErrors(const Picture& picture, const Picture& reference) {
         result.mse += squared(a - r);
         result.mae += std::abs(a - r);
     }
-    const double sumOfPicture = sumOf(picture), sumOfReference = sumOf(reference);
+    const Sums sums{sumOf(picture), sumOf(reference)};
     const auto count = static_cast<double>(picture.size());
     result.mse /= count;
     result.mae /= count;
-    result.meanError =
-        sumOfReference == 0.0 ? std::nan("") : (sumOfPicture - sumOfReference) / sumOfReference;
+    result.meanError = asShare(sums.picture - sums.reference, sums);
 
     std::vector<double> errors = pixelErrors(picture, reference);
     result.relMse = meanOf(errors);
@@ -116,10 +127,11 @@ double meanErrorHalfWidth(const Picture& picture, const Picture& reference,
                            std::sqrt(static_cast<double>(variance[i + 2])));
         return sum;
     };
-    const double ratio = sumOf(picture) / sumOf(reference);
-    return normalQuantile99 / std::abs(sumOf(reference)) *
-           std::sqrt(varianceOfSum(pictureVariance) +
-                     squared(ratio) * varianceOfSum(referenceVariance));
+    const Sums sums{sumOf(picture), sumOf(reference)};
+    const double ratio = asShare(sums.picture, sums);
+    const double variance =
+        varianceOfSum(pictureVariance) + squared(ratio) * varianceOfSum(referenceVariance);
+    return normalQuantile99 * std::abs(asShare(std::sqrt(variance), sums));
 }
 
 double meanErrorHalfWidthByScatter(const Picture& picture, const Picture& reference) {
@@ -129,9 +141,10 @@ double meanErrorHalfWidthByScatter(const Picture& picture, const Picture& refere
         differences[i / 3] += static_cast<double>(picture[i]) - static_cast<double>(reference[i]);
     if (differences.size() < 2) return std::nan("");
     const Summary summary = summarize(differences);
-    const double meanOfReference = sumOf(reference) / static_cast<double>(differences.size());
-    return studentQuantile(0.99, static_cast<double>(differences.size() - 1)) *
-           summary.standardError / std::abs(meanOfReference);
+    const auto count = static_cast<double>(differences.size());
+    const double errorOfSum = count * summary.standardError;
+    return studentQuantile(0.99, count - 1.0) *
+           std::abs(asShare(errorOfSum, {sumOf(picture), sumOf(reference)}));
 }
 
 }  // namespace etendue

@@ -13,10 +13,11 @@ struct ImageErrors {
     double relMse = 0.0;         // (a − r)² / (r² + 0.01)
     double relMseTrimmed = 0.0;  // relMse of the pixels that the 0.1 % worst are left out of
     double mae = 0.0;            // |a − r|
-    double meanError = 0.0;      // (mean a − mean r) / mean r, signed; NaN where mean r is 0
+    double meanError = 0.0;      // (mean a − mean r) / mean r, signed; see below
 };
 
-/// Both of the same size, of at least one pixel; otherwise std::invalid_argument.
+/// Both of the same size, of at least one pixel; otherwise std::invalid_argument. Against a black
+/// reference the mean error is 0 if the picture is black, too, and else NaN: undefined.
 ImageErrors imageErrors(const Picture& picture, const Picture& reference);
 
 /// One value a pixel: the mean over its channels of (a − r)² / (r² + 0.01).
@@ -42,11 +43,13 @@ double biasSquared(const Picture& picture1, const Picture& picture2, const Pictu
 
 /// Half of the 99 % interval of ImageErrors::meanError, from what is known of each pixel: the
 /// variance of its mean in each channel, empty for a picture without noise. The channels of a pixel
-/// are taken to vary together, which at worst makes the interval √3 times too wide.
+/// are taken to vary together, which at worst makes the interval √3 times too wide. NaN where the
+/// mean error is.
 double meanErrorHalfWidth(const Picture& picture, const Picture& reference,
                           const Picture& pictureVariance, const Picture& referenceVariance);
 /// The same from the scatter of the differences among pixels: as if their differences were nothing
-/// but noise, independent and of one spread. NaN for fewer than two pixels.
+/// but noise, independent and of one spread. NaN where the mean error is, and for fewer than two
+/// pixels.
 double meanErrorHalfWidthByScatter(const Picture& picture, const Picture& reference);
 
 }  // namespace etendue

@@ -1,6 +1,8 @@
 // A benchmark's results as a table for the terminal.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "tools/bench_summary.h"
 #include "tools/text_table.h"
 
@@ -8,7 +10,9 @@ namespace etendue {
 
 namespace {
 
+/// A dash for what is no number, such as the ratio of two efficiencies without an error.
 std::string figureText(const BenchFigure& figure) {
+    if (std::isnan(figure.value)) return "–";
     return fmt::format("{:.3g} ({:.3g} – {:.3g})", figure.value, figure.interval.low,
                        figure.interval.high);
 }

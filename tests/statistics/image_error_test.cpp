@@ -48,9 +48,20 @@ TEST_CASE("ImageErrors: the trimmed error leaves out the worst pixel of a thousa
 }
 
 TEST_CASE("ImageErrors: against a black reference relMSE is finite and the mean error no number") {
-    const ImageErrors errors = imageErrors(Picture(3, 0.1F), Picture(3, 0.0F));
+    const Picture grey(6, 0.1F), black(6, 0.0F);
+    const ImageErrors errors = imageErrors(grey, black);
     CHECK(errors.relMse == closeTo(1.0));
     CHECK(std::isnan(errors.meanError));
+    CHECK(std::isnan(meanErrorHalfWidth(grey, black, {}, {})));
+    CHECK(std::isnan(meanErrorHalfWidthByScatter(grey, black)));
+}
+
+TEST_CASE("ImageErrors: a black picture is as bright as a black reference") {
+    const Picture black(6, 0.0F);
+    CHECK(imageErrors(black, black).meanError == 0.0);
+    CHECK(meanErrorHalfWidth(black, black, {}, {}) == 0.0);
+    CHECK(meanErrorHalfWidth(black, black, black, black) == 0.0);
+    CHECK(meanErrorHalfWidthByScatter(black, black) == 0.0);
 }
 
 TEST_CASE("ImageErrors: pictures of two sizes are refused") {

@@ -141,3 +141,16 @@ TEST_CASE("Bench summary: intervals of few seeds cover as often as they say") {
     CHECK(covered > 0.93 * trials);
     CHECK(covered < 0.97 * trials);
 }
+
+TEST_CASE(
+    "Bench summary: of a black scene there is no ratio of efficiencies, and none is printed") {
+    BenchRecords records;
+    for (const char* estimator : {"pt", "bdpt"})
+        for (int seed = 0; seed < 2; ++seed)
+            records.runs.push_back(runOf(estimator, seed, 0.0, 0.01));
+    const auto results = summarizeBench(records, 0.1);
+    REQUIRE(results.size() == 2);
+    const std::string text = benchText(results, records, 0.1);
+    CHECK(text.find("0 (0 – 0)") != text.npos);
+    CHECK(text.find("nan") == text.npos);
+}

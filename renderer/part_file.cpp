@@ -216,24 +216,28 @@ Part readPart(const fs::path& file) {
     return std::move(header.part);
 }
 
-std::string differenceOf(const PartInfo& a, const PartInfo& b) {
-    const auto differ = [](const std::string& name, const std::string& x, const std::string& y) {
-        return fmt::format("{}: {} and {}", name, x, y);
+std::string differenceOf(const PartInfo& expected, const PartInfo& found) {
+    const auto differ = [](const std::string& name, const std::string& wanted,
+                           const std::string& is) {
+        const auto orNone = [](const std::string& text) { return text.empty() ? "none" : text; };
+        return fmt::format("{}: has {}, expected {}", name, orNone(is), orNone(wanted));
     };
-    for (std::size_t i = 0; i < std::max(a.madeFrom.size(), b.madeFrom.size()); ++i) {
-        if (i >= a.madeFrom.size())
-            return differ(b.madeFrom[i].first, "none", b.madeFrom[i].second);
-        if (i >= b.madeFrom.size())
-            return differ(a.madeFrom[i].first, a.madeFrom[i].second, "none");
-        const auto& [nameA, valueA] = a.madeFrom[i];
-        const auto& [nameB, valueB] = b.madeFrom[i];
-        if (nameA != nameB) return differ("made_from", nameA, nameB);
-        if (valueA != valueB) return differ(nameA, valueA, valueB);
+    const auto &wanted = expected.madeFrom, &is = found.madeFrom;
+    for (std::size_t i = 0; i < std::max(wanted.size(), is.size()); ++i) {
+        if (i >= wanted.size()) return differ(is[i].first, "", is[i].second);
+        if (i >= is.size()) return differ(wanted[i].first, wanted[i].second, "");
+        if (wanted[i].first != is[i].first)
+            return differ("made_from", wanted[i].first, is[i].first);
+        if (wanted[i].second != is[i].second)
+            return differ(wanted[i].first, wanted[i].second, is[i].second);
     }
-    if (a.window != b.window)
-        return differ("window", windowAsText(a.window), windowAsText(b.window));
-    if (a.layers != b.layers) return differ("layers", layersText(a.layers), layersText(b.layers));
-    if (a.color != b.color) return differ("color", "RGB", "XYZ");
+    if (expected.window != found.window)
+        return differ("window", windowAsText(expected.window), windowAsText(found.window));
+    if (expected.layers != found.layers)
+        return differ("layers", layersText(expected.layers), layersText(found.layers));
+    const auto colorText = [](FilmColor color) { return color == FilmColor::rgb ? "RGB" : "XYZ"; };
+    if (expected.color != found.color)
+        return differ("color", colorText(expected.color), colorText(found.color));
     return {};
 }
 

@@ -56,7 +56,7 @@ PartInfo readPartInfo(const std::filesystem::path& file);
 
 /// What keeps two parts from being of the same picture: the first name of `madeFrom`, or "window",
 /// "layers" or "color", that differs, with both values. Empty if nothing does.
-std::string differenceOf(const PartInfo& a, const PartInfo& b);
+std::string differenceOf(const PartInfo& expected, const PartInfo& found);
 
 /// Adds a part's samples to those of `info` and `film`. Throws InputError, naming `file`, and
 /// changes nothing, if it is of another picture or has samples that are there already.

@@ -14,6 +14,7 @@
 #include "tools/json.h"
 #include "tools/progress.h"
 #include "tools/text_table.h"
+#include "tools/write_file.h"
 
 namespace etendue {
 
@@ -23,6 +24,7 @@ namespace {
 struct LightPicture {
     std::filesystem::path file;
     int width = 0, height = 0;
+    std::optional<FrameWindow> window;  // of an EXR
     Picture rgb;
     std::optional<Picture> variance;  // of each pixel's mean
     std::string missingVariance;      // why there is none
@@ -55,16 +57,19 @@ void readVariance(LightPicture& picture) {
     const auto [least, most] = std::ranges::minmax(layer->pixels);
     if (least < 0.0F)
         throw InputError(fmt::format("{}: a variance is negative", picture.file.string()));
+    const bool isBlack = std::ranges::all_of(picture.rgb, [](float v) { return v == 0.0F; });
     if (most > 0.0F)
         picture.variance = layer->pixels;
     else
         picture.missingVariance =
-            "has variance 0 everywhere: a single sample a pixel says nothing of its noise";
+            fmt::format("has variance 0 everywhere, {}, and says nothing of its noise",
+                        isBlack ? "since it is black" : "as one of a single sample a pixel has");
 }
 
 LightPicture readPicture(const std::filesystem::path& file) {
     const Image image = readImage(file);
-    LightPicture picture{file, image.width, image.height, lightOf(image, file), {}, {}};
+    LightPicture picture{file, image.width, image.height, {}, lightOf(image, file), {}, {}};
+    picture.window = readExrWindow(file);
     readVariance(picture);
     return picture;
 }
@@ -121,8 +126,14 @@ std::vector<std::string> exceededLimits(const CompareCommand& command, const Com
                 fmt::format("{} {:.4g} exceeds {} {:g}", name, value, option, *limit));
     };
     hold("relMSE", c.errors.relMse, "--max-relmse", command.maxRelMse);
-    hold("mean error in percent", 100.0 * std::abs(c.errors.meanError), "--max-mean-error",
-         command.maxMeanErrorPercent);
+    if (command.maxMeanErrorPercent && std::isnan(c.errors.meanError))
+        exceeded.push_back(
+            fmt::format("mean error is undefined, since the reference is black: it is within no "
+                        "--max-mean-error {:g}",
+                        *command.maxMeanErrorPercent));
+    else
+        hold("mean error in percent", 100.0 * std::abs(c.errors.meanError), "--max-mean-error",
+             command.maxMeanErrorPercent);
     hold("FLIP", c.flip, "--max-flip", command.maxFlip);
     return exceeded;
 }
@@ -168,6 +179,18 @@ std::string zText(const TileZTest& z, int tileSize) {
                       z.standardError);
 }
 
+/// A row of the table.
+std::vector<std::string> meanErrorRow(const Comparison& c) {
+    if (std::isnan(c.errors.meanError))
+        return {"mean error", "undefined", "since the reference is black"};
+    const std::string halfWidth = std::isnan(c.meanErrorHalfWidth)
+                                      ? "–"
+                                      : fmt::format("± {:.3f} %", 100.0 * c.meanErrorHalfWidth);
+    return {"mean error", fmt::format("{:+.3f} %", 100.0 * c.errors.meanError),
+            fmt::format("{} (99 %, by {})", halfWidth,
+                        c.isByVariance ? "the variance layers" : "the scatter of the pixels")};
+}
+
 std::string comparisonText(const CompareCommand& command, const Comparison& c) {
     const auto number = [](double value) { return fmt::format("{:.4g}", value); };
     const ImageErrors& e = c.errors;
@@ -178,9 +201,7 @@ std::string comparisonText(const CompareCommand& command, const Comparison& c) {
          {"relMSE, trimmed", number(e.relMseTrimmed), "without the 0.1 % worst pixels"},
          {"MSE", number(e.mse), ""},
          {"MAE", number(e.mae), ""},
-         {"mean error", fmt::format("{:+.3f} %", 100.0 * e.meanError),
-          fmt::format("± {:.3f} % (99 %, by {})", 100.0 * c.meanErrorHalfWidth,
-                      c.isByVariance ? "the variance layers" : "the scatter of the pixels")},
+         meanErrorRow(c),
          {"FLIP", number(c.flip),
           fmt::format("HDR, {} exposures from {:+.2f} to {:+.2f} stops", c.exposures.count,
                       c.exposures.start, c.exposures.stop)}},
@@ -225,11 +246,33 @@ Json comparisonJson(const CompareCommand& command, const Comparison& c) {
     return json;
 }
 
-void checkErrorImage(const std::filesystem::path& file) {
+std::string textOf(const FrameWindow& w) {
+    return fmt::format("{},{},{},{} of {} x {}", w.x, w.y, w.width, w.height, w.fullWidth,
+                       w.fullHeight);
+}
+
+/// Frames may be of two sizes, if their pixels lie in one place.
+void checkSamePlace(const LightPicture& picture, const LightPicture& reference) {
+    if (picture.width != reference.width || picture.height != reference.height)
+        throw InputError(
+            fmt::format("{} has {} x {} pixels, {} has {} x {}: they cannot be compared",
+                        picture.file.string(), picture.width, picture.height,
+                        reference.file.string(), reference.width, reference.height));
+    const std::optional<FrameWindow>&a = picture.window, &b = reference.window;
+    if (a && b && (a->x != b->x || a->y != b->y))
+        throw InputError(
+            fmt::format("{} is the window {}, {} the window {}: they cannot be compared",
+                        picture.file.string(), textOf(*a), reference.file.string(), textOf(*b)));
+}
+
+void checkErrorImage(const CompareCommand& command) {
+    const std::filesystem::path& file = command.errorImage;
     if (!file.empty() && file.extension() != ".exr" && file.extension() != ".png")
         throw InputError(fmt::format("--error-image {}: expected a name that ends in .exr or .png",
                                      file.string()),
                          ExitCode::usage);
+    checkDistinct({{"--error-image", file}},
+                  {{"the picture", command.picture}, {"the reference", command.reference}});
 }
 
 void writeErrorImage(const std::filesystem::path& file, const LightPicture& picture,
@@ -247,14 +290,10 @@ void writeErrorImage(const std::filesystem::path& file, const LightPicture& pict
 }  // namespace
 
 CompareReport compareFiles(const CompareCommand& command) {
-    checkErrorImage(command.errorImage);
+    checkErrorImage(command);
     const LightPicture picture = readPicture(command.picture);
     const LightPicture reference = readPicture(command.reference);
-    if (picture.width != reference.width || picture.height != reference.height)
-        throw InputError(
-            fmt::format("{} has {} x {} pixels, {} has {} x {}: they cannot be compared",
-                        picture.file.string(), picture.width, picture.height,
-                        reference.file.string(), reference.width, reference.height));
+    checkSamePlace(picture, reference);
     const Comparison comparison = compare(command, picture, reference);
     writeErrorImage(command.errorImage, picture, reference);
     const bool isTold = comparison.z && !comparison.z->agree();

@@ -85,6 +85,7 @@ struct Farm {
 /// Ready but for its scripts.
 Farm prepareFarm(const FarmCommand& command) {
     Farm farm{jobFor(command), {}};
+    checkFolder(farm.job.folder);  // before a lens is fitted
     claimFarmFolder(farm.job, loadedHash(farm.job));
     farm.missing = missingTasks(
         farm.job, [](const std::string& sentence) { say(fmt::format("etendue: {}\n", sentence)); });

@@ -96,7 +96,7 @@ void claimFarmFolder(const FarmJob& job, const std::string& sceneHash) {
     const std::vector<Setting> settings = settingsOf(job, sceneHash);
     if (std::filesystem::exists(file)) checkSettings(file, settings);
     for (const auto& folder : {job.parts(), job.logs(), job.picture.parent_path()})
-        std::filesystem::create_directories(folder);
+        makeFolder(folder);
     if (!std::filesystem::exists(file)) writeWholeFile(file, settingsText(settings));
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "renderer/part_file.h"
+
 namespace etendue {
 
 namespace {
@@ -31,10 +33,12 @@ std::string renderLine(const FarmJob& job) {
     return line;
 }
 
-/// "etendue merge -o PICTURE --require 0:N" but for the parts.
+/// "etendue merge -o PICTURE --require 0:N" but for the parts. A picture by the name of a part is
+/// made anew, too, each time.
 std::string mergeStart(const FarmJob& job) {
-    return fmt::format("{} merge -o {} --require 0:{}", shellQuoted(job.program.string()),
-                       shellQuoted(job.picture.string()), job.plan.samples);
+    return fmt::format("{} merge -o {} --require 0:{}{}", shellQuoted(job.program.string()),
+                       shellQuoted(job.picture.string()), job.plan.samples,
+                       isPartFile(job.picture) ? " --restart" : "");
 }
 
 /// Slurm replaces %A and the like in the whole path of a log.

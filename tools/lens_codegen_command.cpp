@@ -7,6 +7,8 @@
 namespace etendue {
 
 ExitCode runLensCodegen(const LensCodegenCommand& command) {
+    checkWritable(command.output);
+    checkDistinct({{"-o", command.output}}, {{"the lens", findLensFile(command.choice.lens)}});
     const Prescription prescription = loadPrescription(command.choice);
     const ObtainedFit obtained = obtainFit(prescription, command.choice, command.options);
     const std::string name =

@@ -249,6 +249,8 @@ LensDrawing drawLens(const Prescription& prescription, const LensDrawCommand& co
 }
 
 ExitCode runLensDraw(const LensDrawCommand& command) {
+    checkDistinct({{"-o", command.output}}, {{"the lens", findLensFile(command.choice.lens)}});
+    checkWritable(command.output);
     const LensDrawing drawing = drawLens(loadPrescription(command.choice), command);
     writeWholeFile(command.output, drawing.svg.document());
     if (command.asJson) {

@@ -179,6 +179,8 @@ ObtainedFit obtainFit(const Prescription& prescription, const LensChoice& choice
 }
 
 ExitCode runLensFit(const LensFitCommand& command) {
+    checkWritable(command.output);
+    checkDistinct({{"-o", command.output}}, {{"the lens", findLensFile(command.choice.lens)}});
     const Prescription prescription = loadPrescription(command.choice);
     const ObtainedFit obtained = obtainFit(prescription, command.choice, command.options);
     if (!command.output.empty()) writeWholeFile(command.output, fitFileText(obtained.fit));

@@ -207,11 +207,8 @@ LensReport makeReport(const LensReportCommand& command) {
 }
 
 ExitCode runLensReport(const LensReportCommand& command) {
-    std::error_code error;
-    std::filesystem::create_directories(command.folder, error);
-    if (error)
-        throw InputError(fmt::format("{}: {}", command.folder.string(), error.message()),
-                         ExitCode::missingFile);
+    makeFolder(command.folder);
+    for (const char* name : {"index.html", "report.json"}) checkWritable(command.folder / name);
     const LensReport report = makeReport(command);
     const std::string json = jsonOf(report).text();
     writeWholeFile(command.folder / "index.html", reportPage(report, commandLine(command)));

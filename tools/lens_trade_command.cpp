@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <exception>
 
 #include "lens/fit_domain.h"
 #include "tools/json.h"
@@ -215,16 +216,35 @@ std::vector<LensTrade> measureAll(const LensTradeCommand& command) {
     return trades;
 }
 
+void checkFiles(const LensTradeCommand& command) {
+    std::vector<GivenFile> lenses;
+    for (const std::string& lens : command.lenses) lenses.push_back({"a lens", findLensFile(lens)});
+    checkDistinct({{"--csv", command.csv}, {"--plot", command.plot}}, lenses);
+    checkWritable(command.csv);
+    checkWritable(command.plot);
+}
+
+void writeFiles(const LensTradeCommand& command, const std::vector<LensTrade>& trades) {
+    if (!command.csv.empty()) writeWholeFile(command.csv, csvText(trades));
+    if (!command.plot.empty()) writeWholeFile(command.plot, plotText(trades));
+}
+
 }  // namespace
 
 ExitCode runLensTrade(const LensTradeCommand& command) {
     if (command.slides) return runSlidesTable(command.asJson);
     if (command.lenses.empty())
         throw InputError("lens trade: name a lens, or several, or --slides", ExitCode::usage);
+    checkFiles(command);
     const std::vector<LensTrade> trades = measureAll(command);
-    if (!command.csv.empty()) writeWholeFile(command.csv, csvText(trades));
-    if (!command.plot.empty()) writeWholeFile(command.plot, plotText(trades));
+    std::exception_ptr failure;  // no reason to lose the table, too
+    try {
+        writeFiles(command, trades);
+    } catch (const std::exception&) {
+        failure = std::current_exception();
+    }
     fmt::print("{}", command.asJson ? jsonOf(trades).text() + "\n" : tableText(trades));
+    if (failure) std::rethrow_exception(failure);
     return ExitCode::success;
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "config/config.h"
 #include "renderer/estimator.h"
 #include "renderer/parallel.h"
 #include "tools/bench_options.h"
@@ -159,6 +160,34 @@ void addReplay(CLI::App& app, ReplayCommand& c) {
     replay->add_flag("--json", c.asJson, "Print JSON");
 }
 
+/// The command that was given last, or the program.
+const CLI::App& innermost(const CLI::App& app) {
+    const std::vector<CLI::App*> given = app.get_subcommands();
+    return given.empty() ? app : innermost(*given.back());
+}
+
+std::string unknownCommand(const std::string& word, const CLI::App& parent) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : parent.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    const auto nearest = nearestName(word, names);
+    return fmt::format("unknown command '{}'{}", word,
+                       nearest ? fmt::format("; did you mean '{}'?", *nearest) : "");
+}
+
+/// CLI11 does not name a word that is no command, and names words too many from last to first.
+std::string usageMessage(const CLI::App* app, const CLI::Error& error) {
+    const std::vector<std::string> unread = app->remaining(true);
+    const CLI::App& command = innermost(*app);
+    const bool isTooMuch = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+    std::string message = error.what();
+    if (!unread.empty() && command.get_require_subcommand_min() > 0 && !unread[0].starts_with('-'))
+        message = unknownCommand(unread[0], command);
+    else if (isTooMuch)
+        message = fmt::format("not expected: {}", fmt::join(unread, " "));
+    return CLI::FailureMessage::simple(app, CLI::Error("", message));
+}
+
 ExitCode run(int argc, char** argv) {
     CLI::App app(
         "Étendue renders scenes through real photographic lenses, by unbiased light transport.",
@@ -166,6 +195,7 @@ ExitCode run(int argc, char** argv) {
     app.set_version_flag("--version", std::string("etendue ") + version);
     app.footer(learnMore);
     app.require_subcommand(1);
+    app.failure_message(usageMessage);
     app.get_formatter()->column_width(28);
     RenderCommand render;
     render.commandLine = joinArguments(argc, argv);
@@ -202,7 +232,9 @@ int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN);
     try {
         const ExitCode code = etendue::run(argc, argv);
-        if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
+        // A flush that failed before, CLI11's or a command's, has left no text, but the error.
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            throw std::runtime_error("cannot write to standard output");
         return static_cast<int>(code);
     } catch (const etendue::InputError& error) {
         say(fmt::format("etendue: {}\n", error.what()));

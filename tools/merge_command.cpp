@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "renderer/output_lock.h"
 #include "renderer/part_file.h"
+#include "tools/part_keeper.h"
 #include "tools/progress.h"
 #include "tools/version.h"
 #include "tools/write_file.h"
@@ -72,16 +74,40 @@ std::string exactnessText(const Merged& merged) {
         state.roundedTerms);
 }
 
+void checkFiles(const MergeCommand& command) {
+    checkWritable(command.output, ".exr");
+    checkWritable(command.preview.file, ".png");
+    std::vector<GivenFile> written{{"--preview", command.preview.file}}, read;
+    for (const std::filesystem::path& part : command.parts) read.push_back({"a part", part});
+    // A part that others are added to loses nothing.
+    (isPartFile(command.output) ? read : written).push_back({"-o", command.output});
+    checkDistinct(written, read);
+}
+
+/// Whether there is a part in the output's place whose samples the merge does not have.
+bool replacesPart(const MergeCommand& command) {
+    const auto isOutput = [&](const std::filesystem::path& part) {
+        std::error_code error;  // of one that is not there, which is another
+        return std::filesystem::equivalent(part, command.output, error);
+    };
+    return isPartFile(command.output) && std::ranges::none_of(command.parts, isOutput);
+}
+
 }  // namespace
 
 ExitCode runMerge(const MergeCommand& command) {
-    checkWritable(command.output, ".exr");
-    checkWritable(command.preview.file, ".png");
-    const OutputLock lock(command.output);
+    checkFiles(command);
+    const OutputLock lock(lockedFor(command.output));
+    if (!command.restarts && replacesPart(command))
+        refuseToReplacePart(command.output, "named among the parts it adds to them");
     const Merged merged = mergeAll(command.parts);
     writeMerged(command, merged);
     fmt::print("{}: samples {}, {}\n", command.output.string(), merged.info.ranges.text(),
                exactnessText(merged));
+    if (const std::uint64_t bad = merged.film.badSamples(); bad > 0)
+        say(fmt::format(
+            "etendue: {} samples of the parts were not finite or negative and were left out\n",
+            bad));
     if (!command.required) return ExitCode::success;
     const std::vector<SampleRange> holes = merged.info.ranges.holes(*command.required);
     for (const SampleRange& hole : holes) say(fmt::format("hole {}\n", textOf(hole)));

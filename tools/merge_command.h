@@ -22,6 +22,7 @@ struct MergeCommand {
     std::filesystem::path output;
     Preview preview;
     std::optional<SampleRange> required;
+    bool restarts = false;    // replaces the part that is there, though it is none of `parts`
     std::string commandLine;  // for the metadata
 };
 

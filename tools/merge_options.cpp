@@ -22,6 +22,7 @@ void addMergeCommand(CLI::App& app, const std::string& commandLine,
         ->type_name("FILE");
     addSampleRange(merge, "--require", c.required,
                    "Name the samples that are missing of these, and exit with 75");
+    merge->add_flag("--restart", c.restarts, "Replace the part that is there, whatever it holds");
     addPreview(merge, c.preview);
     merge->callback([command, &chosen] { chosen = [command] { return runMerge(*command); }; });
 }

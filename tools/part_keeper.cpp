@@ -58,7 +58,8 @@ std::uint32_t PartKeeper::resume(Film& film) {
         throw InputError(fmt::format("{}: {}", file_.string(), reason));
     };
     if (const std::string difference = differenceOf(info_, part->info); !difference.empty())
-        fail("is a part of another picture than the one asked for: " + difference);
+        fail("is a part of another picture than the one asked for: " + difference +
+             "; --samples asks for more without a change of files or settings");
     const std::vector<SampleRange>& ranges = part->info.ranges.ranges();
     if (ranges.size() > 1 || (ranges.size() == 1 && ranges.front().begin != first_))
         fail(
@@ -110,13 +111,23 @@ void PartKeeper::remove() const {
     fs::remove(previousPart(file_), ignored);
 }
 
-void refuseToReplacePart(const fs::path& part) {
+fs::path keptPartOf(const fs::path& output) {
+    std::error_code error;
+    const bool isElsewhere = fs::exists(output, error) && !fs::is_regular_file(output, error);
+    return isElsewhere ? fs::path() : partFileFor(output);
+}
+
+fs::path lockedFor(const fs::path& output) {
+    const fs::path part = keptPartOf(output);
+    return part.empty() ? output : part;
+}
+
+void refuseToReplacePart(const fs::path& part, const std::string& remedy) {
     std::error_code error;
     if (!fs::exists(part, error)) return;
     throw InputError(
-        fmt::format("{}: holds samples of an unfinished render; --resume goes on from them, "
-                    "--restart throws them away",
-                    part.string()),
+        fmt::format("{}: holds samples of an unfinished render; {}, --restart throws them away",
+                    part.string(), remedy),
         ExitCode::usage);
 }
 

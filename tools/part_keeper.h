@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "renderer/film.h"
 #include "renderer/image_io.h"
@@ -56,7 +57,15 @@ private:
     Clock::time_point last_ = Clock::now();
 };
 
-/// Throws InputError if there is a part already whose samples would be lost.
-void refuseToReplacePart(const std::filesystem::path& part);
+/// The part of a picture; none of one that goes into a pipe or a device.
+std::filesystem::path keptPartOf(const std::filesystem::path& output);
+
+/// What to lock before writing an output: the part that "x.exr", "x" and "x.part.exr" have in
+/// common, since whoever writes one of them may write and remove it.
+std::filesystem::path lockedFor(const std::filesystem::path& output);
+
+/// Throws InputError if there is a part already, whose samples would be lost. `remedy`: how to keep
+/// them, "--resume goes on from them".
+void refuseToReplacePart(const std::filesystem::path& part, const std::string& remedy);
 
 }  // namespace etendue

@@ -97,7 +97,11 @@ Metadata metadataFor(const RenderCommand& command, const LoadedScene& loaded, co
 }
 
 /// What is wrong with the picture, said aloud: nothing is left out in silence.
-void reportDefects(const RenderCommand& command, const RenderResult& result) {
+void reportDefects(const RenderCommand& command, const Film& film, const RenderResult& result) {
+    if (const std::uint64_t before = film.badSamples() - result.badSampleCount; before > 0)
+        say(fmt::format(
+            "etendue: {} samples of the part were not finite or negative and were left out\n",
+            before));
     if (result.badSampleCount > 0) {
         say(fmt::format(
             "etendue: {} samples were not finite or negative and were left out; the first:\n",
@@ -148,12 +152,33 @@ void writePictures(const RenderCommand& command, const LoadedScene& loaded, cons
     writePreview(command.preview, film.window(), channels.front().pixels);
 }
 
-/// None of a picture that goes into a pipe or a device.
-std::filesystem::path keptPartOf(const std::filesystem::path& output) {
-    std::error_code error;
-    const bool isElsewhere =
-        std::filesystem::exists(output, error) && !std::filesystem::is_regular_file(output, error);
-    return isElsewhere ? std::filesystem::path() : partFileFor(output);
+std::vector<GivenFile> writtenFiles(const RenderCommand& command,
+                                    const std::filesystem::path& partFile) {
+    std::vector<GivenFile> files{{"-o", command.output},
+                                 {"--preview", command.preview.file},
+                                 {"--technique-images", command.techniqueImages}};
+    if (partFile.empty()) return files;
+    files.push_back({"a part file of -o", previousPart(partFile)});
+    if (partFile != command.output) files.push_back({"a part file of -o", partFile});
+    return files;
+}
+
+void checkFiles(const RenderCommand& command, const std::filesystem::path& partFile) {
+    checkWritable(command.output, ".exr");
+    checkWritable(command.preview.file, ".png");
+    checkWritable(command.techniqueImages, ".exr");
+    checkWritable(partFile, ".exr");
+    checkDistinct(writtenFiles(command, partFile),
+                  {{"the scene", command.scene}, {"--camera", command.camera}});
+}
+
+/// Nobody else may be writing it.
+void makeWayFor(const RenderCommand& command, const std::filesystem::path& partFile) {
+    if (partFile.empty()) return;
+    sweepTemporaries(command.output);
+    sweepTemporaries(partFile);
+    if (!command.resumes && !command.restarts)
+        refuseToReplacePart(partFile, "--resume goes on from them");
 }
 
 /// What cannot be had together.
@@ -190,6 +215,25 @@ SampleRange wantedSamples(const RenderCommand& command, const LoadedScene& loade
     if (command.range) return *command.range;
     const bool isOpenEnded = !command.samples && (command.timeLimitSeconds || command.errorLimit);
     return {0, isOpenEnded ? unlimitedSamples : static_cast<std::uint32_t>(loaded.samples)};
+}
+
+/// What to take from `first` on. One that was begun is finished though nobody wants it: without it
+/// the picture would have more samples here than there.
+SampleRange samplesLeft(SampleRange wanted, std::uint32_t first, const Film& film) {
+    const std::uint32_t begun = film.state().unfinishedParts > 0 ? 1 : 0;
+    return {first, std::max(wanted.end, first + begun)};
+}
+
+RenderSettings settingsFor(const RenderCommand& command, const LoadedScene& loaded,
+                           SampleRange left, int threads) {
+    RenderSettings settings;
+    settings.firstSample = left.begin;
+    settings.samples = left.size();
+    settings.seed = command.seed;
+    settings.sampler = loaded.sampler;
+    settings.threads = threads;
+    if (command.timeLimitSeconds) settings.timeLimitSeconds = *command.timeLimitSeconds;
+    return settings;
 }
 
 /// Looks at the noise of the whole picture, and more rarely the more samples there are: each time
@@ -237,8 +281,9 @@ std::string endText(const RenderCommand& command, const Film& film, const Render
         return fmt::format("--error {:g} is reached: {}, {} samples per pixel\n",
                            *command.errorLimit, noiseText(watch.noise()), samples);
     if (result.wasInterrupted)
-        return fmt::format("stopped early: {} of {} samples per pixel are in the picture\n",
-                           samples, wanted.size());
+        return fmt::format(
+            "stopped early: {}{} samples per pixel are in the picture\n", samples,
+            wanted.end == unlimitedSamples ? "" : fmt::format(" of {}", wanted.size()));
     if (samples < wanted.size())
         return fmt::format("--time {:g} is over: {} samples per pixel\n", *command.timeLimitSeconds,
                            samples);
@@ -247,21 +292,26 @@ std::string endText(const RenderCommand& command, const Film& film, const Render
                        *command.errorLimit);
 }
 
+/// Why there still is a part.
+std::string partText(const PartKeeper& keeper, const Film& film, SampleRange wanted, bool isEarly) {
+    if (keeper.file().empty()) return {};
+    const std::string part = keeper.file().string();
+    if (isEarly) return fmt::format("the same command with --resume goes on from {}\n", part);
+    if (film.samples() <= wanted.size()) return {};
+    return fmt::format(
+        "{}: is kept, since it holds {} samples per pixel, more than the {} asked for; the picture "
+        "is of all of them\n",
+        part, film.samples(), wanted.size());
+}
+
 }  // namespace
 
 ExitCode runRender(const RenderCommand& command) {
     heedWriteRequests();  // before all else: one that comes early is to end nothing
-    checkWritable(command.output, ".exr");
-    checkWritable(command.preview.file, ".png");
-    checkWritable(command.techniqueImages, ".exr");
     const std::filesystem::path partFile = keptPartOf(command.output);
-    checkWritable(partFile, ".exr");
-    const OutputLock lock(command.output);
-    if (!partFile.empty()) {
-        sweepTemporaries(command.output);
-        sweepTemporaries(partFile);
-        if (!command.resumes && !command.restarts) refuseToReplacePart(partFile);
-    }
+    checkFiles(command, partFile);
+    const OutputLock lock(lockedFor(command.output));
+    makeWayFor(command, partFile);
 
     const int threads = command.threads.value_or(hardwareThreads());
     const LoadedScene loaded = loadFor(command, threads);
@@ -273,19 +323,15 @@ ExitCode runRender(const RenderCommand& command) {
                       command.checkpointSeconds);
     const std::uint32_t first = command.resumes ? keeper.resume(film) : wanted.begin;
 
-    RenderSettings settings;
-    settings.firstSample = first;
-    settings.samples = std::max(wanted.end, first) - first;
-    settings.seed = command.seed;
-    settings.sampler = loaded.sampler;
-    settings.threads = threads;
-    if (command.timeLimitSeconds) settings.timeLimitSeconds = *command.timeLimitSeconds;
+    RenderSettings settings =
+        settingsFor(command, loaded, samplesLeft(wanted, first, film), threads);
     TechniqueImages techniques(film.window(), film.color());
     if (!command.techniqueImages.empty()) settings.techniqueImages = &techniques;
 
     heedStopRequests();
     Progress progress(command.progress);
-    RenderProgress last;
+    RenderProgress last;  // of a part that has all the samples, nothing more comes
+    last.samplesDone = last.samplesTarget = first - wanted.begin;
     NoiseWatch watch(command.errorLimit);
     bool isNoiseReached = false;
     const auto metadata = [&](double seconds) {
@@ -308,18 +354,18 @@ ExitCode runRender(const RenderCommand& command) {
         render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator),
                Filter(loaded.film.filter, loaded.film.filterRadius), film, settings, onBatch);
     progress.finish(last);
-    reportDefects(command, result);
+    reportDefects(command, film, result);
 
     const bool isEarly = result.wasInterrupted && !isNoiseReached;
-    if (isEarly || command.keepsPart || isPartFile(command.output))
+    const bool keepsPart = isEarly || command.keepsPart || isPartFile(command.output) ||
+                           film.samples() > wanted.size();
+    if (keepsPart)
         keeper.write(film, first + result.samples, result.seconds, metadata(result.seconds));
     writePictures(command, loaded, film, techniques, metadata(result.seconds));
-    if (!isEarly && !command.keepsPart && !isPartFile(command.output)) keeper.remove();
-    if (command.progress != ProgressStyle::quiet) {
-        say(endText(command, film, result, wanted, watch, isNoiseReached));
-        if (isEarly && !keeper.file().empty())
-            say(fmt::format("--resume goes on from {}\n", keeper.file().string()));
-    }
+    if (!keepsPart) keeper.remove();
+    if (command.progress != ProgressStyle::quiet)
+        say(endText(command, film, result, wanted, watch, isNoiseReached) +
+            partText(keeper, film, wanted, isEarly));
     return isEarly ? ExitCode::stoppedEarly : ExitCode::success;
 }
 

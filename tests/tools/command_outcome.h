@@ -33,6 +33,12 @@ inline Outcome run(const std::string& arguments, const std::string& environment 
     return shell(environment + " " + ETENDUE_COMMAND + " " + arguments);
 }
 
+/// The command, killed by the call that `call` counts (tests/support/unkind_machine).
+inline Outcome killAtCall(int call, const std::string& arguments) {
+    return run(arguments,
+               "LD_PRELOAD=" ETENDUE_UNKIND_MACHINE " UNKIND_KILL=" + std::to_string(call));
+}
+
 inline bool contains(const std::string& text, const std::string& fragment) {
     return text.find(fragment) != std::string::npos;
 }

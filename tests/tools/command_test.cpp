@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <fstream>
+#include <string>
+#include <utility>
 
 #include "tests/support/scenes.h"
 #include "tests/tools/command_outcome.h"
@@ -25,6 +27,19 @@ TEST_CASE("Command: --help teaches, --version names, no command is wrong usage")
     CHECK(run("").code == 64);
     CHECK(run("rendr x").code == 64);
     CHECK(run("render").code == 64);
+}
+
+TEST_CASE("Command: words that are no command, or too many, are named as they were given") {
+    const auto says = [](const std::string& arguments, const std::string& message) {
+        const Outcome outcome = run(arguments);
+        CAPTURE(outcome.output);
+        CHECK(outcome.code == 64);
+        CHECK(contains(outcome.output, message + "\n"));
+    };
+    says("rendr a.toml -o x.exr", "unknown command 'rendr'; did you mean 'render'?");
+    says("lens inof tessar-100mm", "unknown command 'inof'; did you mean 'info'?");
+    says("quux", "unknown command 'quux'");
+    says("check a.toml --threads 1", "not expected: --threads 1");
 }
 
 TEST_CASE("Command: an option that makes no sense is wrong usage, in one clear line" *
@@ -171,16 +186,19 @@ TEST_CASE("Command: a time limit ends the render with success") {
 TEST_CASE("Command: a signal ends the render with 75 and a valid picture") {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", smallScene).string();
-    for (const std::string signal : {"INT", "TERM"}) {
+    const std::pair<std::string, std::string> cases[] = {{"INT", "--samples 100000000"},
+                                                         {"TERM", "--time 1000"}};
+    for (const auto& [signal, limit] : cases) {
         const std::string out = (folder.path() / (signal + ".exr")).string();
         const std::string progress = (folder.path() / (signal + ".txt")).string();
         // Sent as soon as the render has begun to report.
-        const std::string line = "render " + scene + " -o " + out +
-                                 " --samples 100000000 --progress json 2> " + progress +
-                                 " & pid=$!; until [ -s " + progress +
-                                 " ]; do sleep 0.02; done; kill -" + signal + " $pid; wait $pid";
+        const std::string line = "render " + scene + " -o " + out + " " + limit +
+                                 " --progress json 2> " + progress + " & pid=$!; until [ -s " +
+                                 progress + " ]; do sleep 0.02; done; kill -" + signal +
+                                 " $pid; wait $pid";
         CHECK(run(line).code == 75);
         CHECK(contains(readFile(progress), "stopped early"));
+        CHECK(contains(readFile(progress), " of 100000000 samples") == (signal == "INT"));
         CHECK(std::filesystem::file_size(out) > 500);
     }
 }
@@ -207,8 +225,11 @@ TEST_CASE("Command: a reader that goes away is an error, not a kill") {
                              " 2>/dev/null; echo $? > " + code + " ) | true";
     REQUIRE(std::system(line.c_str()) == 0);
     CHECK(readFile(code) == "1\n");
-    const std::string check = std::string(ETENDUE_COMMAND) + " check " + scene;
-    CHECK(WEXITSTATUS(std::system((check + " > /dev/full 2>&1").c_str())) == 1);
+    for (const std::string& arguments : {"check " + scene, std::string("--version")}) {
+        const Outcome full = run(arguments + " 2>&1 > /dev/full");
+        CHECK(full.code == 1);
+        CHECK(full.output == "etendue: cannot write to standard output\n");
+    }
     // Progress that nobody can read costs no picture.
     const std::string render = std::string(ETENDUE_COMMAND) + " render " + scene + " -o " +
                                (folder.path() / "o.exr").string() + " --progress json";

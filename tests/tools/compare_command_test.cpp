@@ -158,7 +158,54 @@ TEST_CASE("Compare: limits that are exceeded fail and say which, others do not")
     // Nothing is 9 % brighter than black.
     pictures.write("black.exr", std::vector<float>(values, 0.0F));
     const CompareCommand black = pictures.command("a.exr", "black.exr");
-    CHECK(exceeded(black, &CompareCommand::maxMeanErrorPercent, 9.0).ends_with("error 9"));
+    CHECK(exceeded(black, &CompareCommand::maxMeanErrorPercent, 9.0) ==
+          "mean error is undefined, since the reference is black: it is within no "
+          "--max-mean-error 9");
+}
+
+TEST_CASE("Compare: against black the mean error is undefined, and of black it is 0") {
+    const Pictures pictures;
+    pictures.write("a.exr", ramp(1.0F));
+    pictures.write("black.exr", std::vector<float>(values, 0.0F));
+    CHECK(contains(pictures.text("a.exr", "black.exr"), "undefined  since the reference is black"));
+    const std::string json = pictures.json("a.exr", "black.exr");
+    CHECK(contains(json, "\"mean_error_percent\": null,"));
+    CHECK(contains(json, "\"mean_error_half_width_percent\": null,"));
+    CompareCommand both = pictures.command("black.exr", "black.exr");
+    both.asJson = false;
+    both.maxRelMse = both.maxMeanErrorPercent = both.maxFlip = 0.0;
+    const CompareReport report = compareFiles(both);
+    CHECK(report.code == ExitCode::success);
+    CHECK(contains(report.text, "+0.000 %  ± 0.000 % (99 %, by the scatter"));
+    CHECK_FALSE(contains(report.text, "nan"));
+}
+
+TEST_CASE("Compare: of a single pixel there is no scatter, and no interval") {
+    const Pictures pictures;
+    writeExr(pictures.folder / "one.exr", {1, 1, 0, 0, 1, 1}, {{{"Y"}, {2.0F}}}, {});
+    CHECK(contains(pictures.text("one.exr", "one.exr"), "+0.000 %  – (99 %, by the scatter"));
+    CHECK(
+        contains(pictures.json("one.exr", "one.exr"), "\"mean_error_half_width_percent\": null,"));
+}
+
+TEST_CASE("Compare: pictures of one size that lie in two places of the frame are refused") {
+    const Pictures pictures;
+    const auto crop = [&](const char* name, const FrameWindow& window) {
+        writeExr(pictures.folder / name, window, {{{"R", "G", "B"}, ramp(1.0F)}}, {});
+    };
+    crop("a.exr", {80, 60, 10, 10, width, height});
+    crop("right.exr", {80, 60, 40, 10, width, height});
+    crop("below.exr", {80, 60, 10, 40, width, height});
+    crop("other-frame.exr", {90, 70, 10, 10, width, height});
+    CHECK(faultOf(pictures.command("a.exr", "right.exr")) ==
+          "a.exr is the window 10,10,32,16 of 80 x 60, right.exr the window 40,10,32,16 of 80 x "
+          "60: they cannot be compared");
+    CHECK(faultOf(pictures.command("below.exr", "a.exr")).starts_with("below.exr is the window "));
+    CHECK(faultOf(pictures.command("a.exr", "other-frame.exr")) == "");
+    // An HDR file does not say where it lies.
+    pictures.folder.write("two.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\naaaabbbb");
+    writeExr(pictures.folder / "two.exr", {80, 60, 10, 10, 2, 1}, {{{"Y"}, {1.0F, 1.0F}}}, {});
+    CHECK(faultOf(pictures.command("two.exr", "two.hdr")) == "");
 }
 
 TEST_CASE("Compare: what cannot be compared gets one message") {
@@ -189,6 +236,23 @@ TEST_CASE("Compare: what cannot be compared gets one message") {
     toJpeg.errorImage = "e.jpg";
     CHECK(faultOf(toJpeg, ExitCode::usage) ==
           "--error-image e.jpg: expected a name that ends in .exr or .png");
+}
+
+TEST_CASE("Compare: an error image in the place of a picture is refused, by whatever path") {
+    const Pictures pictures;
+    pictures.write("a.exr", ramp(1.1F));
+    pictures.write("r.exr", ramp(1.0F));
+    std::filesystem::create_symlink("a.exr", pictures.folder / "link.exr");
+    const auto fault = [&](const std::string& errorImage) {
+        CompareCommand command = pictures.command("a.exr", "r.exr");
+        command.errorImage = pictures.folder / errorImage;
+        return faultOf(command, ExitCode::usage);
+    };
+    const std::string rest = " and --error-image, and one would replace the other";
+    CHECK(fault("a.exr") == "a.exr: is the picture" + rest);
+    CHECK(fault("./r.exr") == "./r.exr: is the reference" + rest);
+    CHECK(fault("link.exr") == "link.exr: is the picture" + rest);
+    CHECK(fault("e.exr") == "");
 }
 
 TEST_CASE("Compare: grey pictures are compared with coloured ones, alpha is left out") {
@@ -290,6 +354,7 @@ TEST_CASE("Compare --z: pictures that do not know their noise are refused by nam
     pictures.writeWithVariance("noisy.exr", ramp(1.0F), 0.01F);
     pictures.write("plain.exr", ramp(1.0F));
     pictures.writeWithVariance("single.exr", ramp(1.0F), 0.0F);
+    pictures.writeWithVariance("black.exr", std::vector<float>(values, 0.0F), 0.0F);
     pictures.writeWithVariance("negative.exr", ramp(1.0F), -0.01F);
     pictures.write("spectral.exr", ramp(1.0F),
                    {{{"variance.X", "variance.Y", "variance.Z"}, ramp(0.1F)}});
@@ -306,7 +371,11 @@ TEST_CASE("Compare --z: pictures that do not know their noise are refused by nam
     CHECK(fault("noisy.exr", "plain.exr") == missing);
     CHECK(fault("plain.exr", "noisy.exr") == missing);
     CHECK(fault("plain.exr", "plain.exr", ExactPicture::reference) == missing);
-    CHECK(fault("noisy.exr", "single.exr").starts_with("single.exr: has variance 0 everywhere"));
+    CHECK(fault("noisy.exr", "single.exr") ==
+          "single.exr: has variance 0 everywhere, as one of a single sample a pixel has, and says "
+          "nothing of its noise");
+    CHECK(fault("noisy.exr", "black.exr") ==
+          "black.exr: has variance 0 everywhere, since it is black, and says nothing of its noise");
     CHECK(fault("noisy.exr", "spectral.exr").starts_with("spectral.exr: has variance.X"));
     CHECK(fault("noisy.exr", "negative.exr") == "negative.exr: a variance is negative");
     CHECK(fault("noisy.exr", "plain.exr", ExactPicture::reference) == "");

@@ -194,3 +194,24 @@ TEST_CASE("Farm: when sbatch fails, so does the command, with the line that fail
     CHECK(contains(outcome.output, "sbatch --parsable --array=0-2"));
     CHECK(linesOf(farm.calls()) == 1);
 }
+
+TEST_CASE(
+    "Farm: what nobody can read is an error, and no reason to leave jobs without their merge") {
+    const Farm farm;
+    const Outcome list = farm.run("list", "2>&1 > /dev/full");
+    CHECK(list.code == 1);
+    CHECK(contains(list.output, "cannot write to standard output"));
+    const Outcome submitted = farm.run("slurm", "--submit 2>&1 > /dev/full");
+    CHECK(submitted.code == 1);
+    CHECK(contains(submitted.output, "cannot write to standard output"));
+    CHECK(linesOf(farm.calls()) == 3);
+}
+
+TEST_CASE("Farm: a file in the place of its folder is an error before a lens is fitted") {
+    const Farm farm;
+    writeFile(farm.out(), "a picture");
+    const Outcome outcome = farm.run("list", "--camera no.toml");
+    CHECK(outcome.code == 65);
+    CHECK(contains(outcome.output, farm.out().string() + ": is a file, expected a folder\n"));
+    CHECK(readFile(farm.out()) == "a picture");
+}

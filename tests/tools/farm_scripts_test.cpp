@@ -115,6 +115,13 @@ TEST_CASE("Farm scripts: the merge takes the parts that are there, and none is a
     CHECK(contains(shell(mergeLine(farm.job)).output, words));
 }
 
+TEST_CASE("Farm scripts: a picture that is a part is made anew by each merge") {
+    AwkwardFarm farm;
+    CHECK_FALSE(contains(mergeLine(farm.job), "--restart"));
+    farm.job.picture = farm.job.folder / "picture.part.exr";
+    CHECK(contains(shell(mergeLine(farm.job)).output, "<--restart>"));
+}
+
 TEST_CASE("Farm scripts: what Slurm is told is in the scripts' heads") {
     const AwkwardFarm farm;
     const std::string script =

@@ -128,6 +128,37 @@ TEST_CASE("Lens command: what is written goes through a link and never replaces 
     CHECK(contains(readFile(folder.path() / "target.svg"), "<svg"));
 }
 
+TEST_CASE("Lens command: a folder that does not exist is told before anything is fitted") {
+    const TemporaryFolder folder;
+    const std::string quick = "XDG_CACHE_HOME=" + folder.path().string() + " timeout 5";
+    for (const std::string option : {"fit tessar-100mm -o ", "codegen tessar-100mm -o ",
+                                     "trade tessar-100mm --csv ", "trade tessar-100mm --plot "}) {
+        CAPTURE(option);
+        const Outcome outcome = run("lens " + option + (folder / "no/file").string(), quick);
+        CHECK(outcome.code == 66);
+        CHECK(outcome.output == "etendue: " + (folder / "no").string() + ": no such folder\n");
+    }
+}
+
+TEST_CASE("Lens command: none writes over its lens, or two of its files into one" *
+          doctest::test_suite("slow")) {
+    const TemporaryFolder folder;
+    const std::string lens = (folder / "lens.toml").string();
+    std::filesystem::copy_file(lensFile("tessar-100mm.toml"), lens);
+    const std::string before = readFile(lens);
+    const std::string plot = (folder / "plot").string();
+    for (const std::string& line :
+         {"lens draw " + lens + " -o " + lens, "lens fit " + lens + " -o " + lens,
+          "lens codegen " + lens + " -o " + lens, "lens trade " + lens + " --csv " + lens,
+          "lens trade " + lens + " --csv " + plot + " --plot " + plot}) {
+        CAPTURE(line);
+        const Outcome outcome = run(line);
+        CHECK(outcome.code == 64);
+        CHECK(contains(outcome.output, "one would replace the other"));
+    }
+    CHECK(readFile(lens) == before);
+}
+
 TEST_CASE("Lens command: a fit is written through links and into pipes, which stay what they are" *
           doctest::test_suite("slow")) {
     const TemporaryFolder folder;

@@ -118,6 +118,21 @@ TEST_CASE("Lens report: an anamorphic lens is looked at in both of its planes" *
     CHECK(focal.x() < 0.95 * focal.y());
 }
 
+TEST_CASE("Lens report: what is in the place of its folder or its files is told before the fit") {
+    const TemporaryFolder folder;
+    const std::string report = "lens report tessar-100mm -o ";
+    const std::string quick = "XDG_CACHE_HOME=" + folder.path().string() + " timeout 5";
+    const std::string file = folder.write("file", "").string();
+    const Outcome place = run(report + file, quick);
+    CHECK(place.code == 65);
+    CHECK(place.output == "etendue: " + file + ": is a file, expected a folder\n");
+    std::filesystem::create_directories(folder / "out/report.json");
+    const Outcome page = run(report + (folder / "out").string(), quick);
+    CHECK(page.code == 65);
+    CHECK(page.output == "etendue: " + (folder / "out/report.json").string() +
+                             ": is a folder, not a file to write\n");
+}
+
 TEST_CASE("Lens report: the command that it names makes it again") {
     LensReportCommand command;
     command.choice.lens = "zoom-57-143mm";

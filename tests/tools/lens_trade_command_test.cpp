@@ -59,6 +59,15 @@ TEST_CASE("Lens command: a fit and a trade of a zoom lens say at which position"
         contains(run("lens fit zoom-57-143mm --terms 4 --degree 3", cache).output, ", at 57 mm\n"));
 }
 
+TEST_CASE("Lens command: a trade whose file cannot be written prints its table all the same") {
+    const Outcome outcome =
+        run("lens trade tessar-100mm --terms 4 --degree 3 --basis axial --form two-point "
+            "--csv /dev/full");
+    CHECK(outcome.code == 1);
+    CHECK(contains(outcome.output, "/dev/full: cannot write"));
+    CHECK(contains(outcome.output, "\n  tessar-100mm  two-point  axial"));
+}
+
 TEST_CASE("Lens command: trade without a lens, or with a basis that does not suit it, is refused") {
     CHECK(run("lens trade").code == 64);
     CHECK(run("lens trade anamorphic-80x90mm --basis axial").code == 64);

@@ -1,9 +1,11 @@
 // Renders that stop, go on, and add up: the program as a user runs it.
 #include <doctest/doctest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -35,7 +37,7 @@ TEST_CASE("Part: ranges add up to the render of all, bit for bit, in any order" 
         for (const char* name : {"worldToCamera", "aperture", "focus", "etendue:estimator"})
             CHECK(contains(readFile(renders.path("m.exr")), name));
         // A part of parts is a part.
-        REQUIRE(renders.merge({"b.part.exr", "c.part.exr"}, "bc.part.exr").code == 0);
+        REQUIRE(renders.merge({"b.part.exr", "c.part.exr"}, "bc.part.exr", "--restart").code == 0);
         REQUIRE(renders.merge({"bc.part.exr", "a.part.exr"}, "m2.exr").code == 0);
         CHECK(renders.pixels("m2.exr") == renders.pixels("whole.exr"));
     }
@@ -71,13 +73,23 @@ TEST_CASE("Part: what does not belong together is refused, and the difference na
         return outcome.output;
     };
     CHECK(contains(refusal("--range 1:3"), "b.part.exr: its samples 1:2 are in another part"));
-    CHECK(contains(refusal("--range 2:3 --seed 7"), "seed: 0 and 7"));
+    CHECK(contains(refusal("--range 2:3 --seed 7"), "seed: has 7, expected 0"));
     CHECK(contains(refusal("--range 2:3 -s estimator.max_depth=3"), "estimator.max_depth=3"));
     CHECK(contains(refusal("--range 2:3 --crop 0,0,8,8"), "window"));
     CHECK(contains(refusal("--range 2:3 --layers albedo"), "layers"));
     const Outcome resumed = renders.render("a.part.exr", "--range 0:4 --resume --seed 3");
     CHECK(resumed.code == 65);
-    CHECK(contains(resumed.output, "seed: 3 and 0"));
+    CHECK(contains(resumed.output, "seed: has 0, expected 3"));
+}
+
+TEST_CASE("Part: what is not finite in it is told wherever it goes") {
+    const Renders renders;
+    const std::string bright = " -s camera.exposure=60 -s light.0.radiance=[1e30,1e30,1e30]";
+    REQUIRE(renders.render("a.part.exr", "--range 0:1" + bright).code == 0);
+    REQUIRE(readPart(renders.path("a.part.exr")).state.badSamples > 0);
+    const char* const told = "samples of the part";
+    CHECK(contains(renders.merge({"a.part.exr"}, "m.exr").output, told));
+    CHECK(contains(renders.render("a.part.exr", "--range 0:1 --resume" + bright).output, told));
 }
 
 TEST_CASE("Part: holes are named, and the picture of the rest is written") {
@@ -136,20 +148,113 @@ TEST_CASE("Part: a damaged one is refused by name, and the one before it is used
     CHECK(renders.pixels("m.exr") == renders.pixels("whole.exr"));
 }
 
-TEST_CASE("Part: a second process on the same output is refused") {
+TEST_CASE("Part: a second process on the same output is refused" * doctest::test_suite("slow")) {
     const Renders renders;
-    const std::string scene = renders.path("s.toml").string();
-    const std::string x = renders.path("x.exr").string();
-    const std::string line =
-        "render " + scene + " -o " + x + " --quiet --samples 1000000 & pid=$!; " + "while ! [ -s " +
-        renders.path(".x.exr.lock").string() + " ]; do sleep 0.02; done; " + ETENDUE_COMMAND +
-        " render " + scene + " -o " + x + " --quiet --samples 1 2>&1; echo code $?; kill -9 $pid";
-    const Outcome outcome = run(line);
+    REQUIRE(renders.render("a.part.exr", "--range 0:1").code == 0);
+    std::string line = renders.renderLine("x.exr", "--samples 1000000 & pid=$!; until [ -s ") +
+                       renders.path(".x").string() +
+                       "*.lock ]; do sleep 0.02; done; kill -STOP $pid; ";
+    // By whatever name: these have one part.
+    for (const std::string& second :
+         {renders.renderLine("x.exr", "--samples 1"), renders.renderLine("x", "--samples 1"),
+          renders.renderLine("x.part.exr", "--range 0:1"),
+          renders.mergeLine({"a.part.exr"}, "x.exr"),
+          renders.mergeLine({"a.part.exr"}, "x.part.exr")})
+        line += std::string(ETENDUE_COMMAND) + ' ' + second + "; echo code $?; ";
+    const Outcome outcome = run(line + "kill -9 $pid");
     CAPTURE(outcome.output);
-    CHECK(contains(outcome.output, "is writing it"));
-    CHECK(contains(outcome.output, "code 1"));
+    const std::string refusal = "etendue: " + renders.path("x.part.exr").string() + ": process ";
+    std::istringstream lines(outcome.output);
+    for (int i = 0; i < 5; ++i) {
+        std::string reason, code;
+        std::getline(lines, reason);
+        std::getline(lines, code);
+        CHECK(reason.starts_with(refusal));
+        CHECK(contains(reason, "is writing it"));
+        CHECK(code == "code 1");
+    }
     // Killed, it holds nothing any more.
-    CHECK(run("render " + scene + " -o " + x + " --quiet --restart --samples 1").code == 0);
+    CHECK(renders.render("x.exr", "--restart --samples 1").code == 0);
+}
+
+TEST_CASE("Part: a merge replaces no part but one of its own, unless --restart says so" *
+          doctest::test_suite("slow")) {
+    const Renders renders;
+    REQUIRE(renders.render("a.part.exr", "--range 0:1").code == 0);
+    REQUIRE(renders.render("b.part.exr", "--range 1:2").code == 0);
+    const auto held = [&] { return readPartInfo(renders.path("a.part.exr")).ranges.text(); };
+    const Outcome refused = renders.merge({"b.part.exr"}, "a.part.exr");
+    CHECK(refused.code == 64);
+    CHECK(contains(refused.output, "a.part.exr: holds samples of an unfinished render; named"));
+    CHECK(held() == "0:1");
+    CHECK(renders.merge({"b.part.exr", "./a.part.exr"}, "a.part.exr").code == 0);
+    CHECK(held() == "0:2");
+    CHECK(renders.merge({"b.part.exr"}, "a.part.exr", "--restart").code == 0);
+    CHECK(held() == "1:2");
+    // A picture is no part, whatever part it has.
+    CHECK(renders.merge({"b.part.exr"}, "a.exr").code == 0);
+    CHECK(held() == "1:2");
+}
+
+TEST_CASE("Part: one with more samples than are asked for stays, and no sample in it is cut" *
+          doctest::test_suite("slow")) {
+    const Renders renders;
+    const fs::path part = renders.path("x.part.exr");
+    REQUIRE(renders.render("x.exr", "--samples 1 --keep-part").code == 0);
+    // A thread's first batch is not all of the frame. That is in the part after some 14 calls, the
+    // next one after 14 more.
+    killAtCall(22,
+               renders.renderLine("x.exr", "--samples 2 --resume --threads 1 --checkpoint 1e-9"));
+    REQUIRE(readPartInfo(part).ranges.text() == "0:1");
+    REQUIRE(readPartInfo(part).unfinishedSamples == std::vector<std::uint32_t>{1});
+    REQUIRE(renders.render("whole.exr", "--samples 2").code == 0);
+    const std::string aloud = "render " + renders.path("s.toml").string() + " -o " +
+                              renders.path("x.exr").string() + " --size 40,24 --resume --samples ";
+    // The second time it has both samples from the beginning.
+    for (int i = 0; i < 2; ++i) {
+        const Outcome outcome = run(aloud + "1");
+        CAPTURE(outcome.output);
+        CHECK(outcome.code == 0);
+        CHECK(contains(outcome.output, "2/2 spp"));
+        CHECK(contains(outcome.output, "x.part.exr: is kept, since it holds 2 samples per pixel"));
+        CHECK(renders.pixels("x.exr") == renders.pixels("whole.exr"));
+        CHECK(readPartInfo(part).ranges.text() == "0:2");
+        CHECK(readPartInfo(part).unfinishedSamples.empty());
+    }
+    const Outcome asked = run(aloud + "2");
+    CHECK(asked.code == 0);
+    CHECK_FALSE(contains(asked.output, "is kept"));
+    CHECK_FALSE(fs::exists(part));
+}
+
+TEST_CASE("Part: a file that a render or a merge would write twice, or over its input, is refused" *
+          doctest::test_suite("slow")) {
+    const Renders renders;
+    const auto refuses = [](const Outcome& outcome, const std::string& reason) {
+        CAPTURE(outcome.output);
+        CHECK(outcome.code == 64);
+        CHECK(contains(outcome.output, reason + ", and one would replace the other"));
+    };
+    const auto twice = [&](const std::string& output, const std::string& option,
+                           const std::string& file) {
+        return renders.render(
+            output, "--estimator bdpt --samples 1 " + option + ' ' + renders.path(file).string());
+    };
+    const std::string images = "--technique-images";
+    refuses(twice("t.exr", images, "t.exr"), "t.exr: is -o and " + images);
+    refuses(twice("t.exr", images, "t.part.exr"), "is " + images + " and a part file of -o");
+    refuses(twice("t.exr", images, "t.part.old.exr"), "is " + images + " and a part file of -o");
+    refuses(twice("t", "--preview", "t"), "t: is -o and --preview");
+    CHECK(renders.names() == std::vector<std::string>{"s.toml"});
+    REQUIRE(renders.render("a.part.exr", "--range 0:1").code == 0);
+    fs::rename(renders.path("a.part.exr"), renders.path("a"));
+    refuses(renders.merge({"a"}, "a"), "a: is a part and -o");
+    CHECK(readPartInfo(renders.path("a")).ranges.text() == "0:1");
+    // What comes out of a pipe is not replaced.
+    CHECK(run(renders.renderLine("t.exr",
+                                 "--samples 1 --estimator bdpt --technique-images "
+                                 "/dev/null --preview /dev/null"))
+              .code == 0);
 }
 
 TEST_CASE("Part: SIGUSR1 writes it while the render goes on; --error ends one" *
@@ -165,7 +270,7 @@ TEST_CASE("Part: SIGUSR1 writes it while the render goes on; --error ends one" *
     };
     const std::string line =
         "render " + scene + " -o " + x + " --quiet --samples 1000000 --checkpoint 1e6 & pid=$!; " +
-        waitFor("-s " + renders.path(".x.exr.lock").string()) + "kill -USR1 $pid; " +
+        waitFor("-s " + renders.path(".x.part.exr.lock").string()) + "kill -USR1 $pid; " +
         waitFor("-e " + part) + "kill -INT $pid; wait $pid; echo code $?";
     const Outcome outcome = run(line);
     CAPTURE(outcome.output);

@@ -24,11 +24,15 @@ public:
     Outcome render(const std::string& output, const std::string& options) const {
         return run(renderLine(output, options));
     }
-    Outcome merge(const std::vector<std::string>& parts, const std::string& output,
-                  const std::string& options = "") const {
+    std::string mergeLine(const std::vector<std::string>& parts, const std::string& output,
+                          const std::string& options = "") const {
         std::string line = "merge";
         for (const std::string& part : parts) line += ' ' + path(part).string();
-        return run(line + " -o " + path(output).string() + ' ' + options);
+        return line + " -o " + path(output).string() + ' ' + options;
+    }
+    Outcome merge(const std::vector<std::string>& parts, const std::string& output,
+                  const std::string& options = "") const {
+        return run(mergeLine(parts, output, options));
     }
     std::vector<float> pixels(const std::string& picture) const {
         return readExrChannels(path(picture), {"R", "G", "B"})->pixels;

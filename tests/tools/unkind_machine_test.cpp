@@ -29,12 +29,6 @@ namespace fs = std::filesystem;
 
 constexpr int killed = 128 + SIGKILL;
 
-/// The command, killed by the call that `call` counts (tests/support/unkind_machine).
-Outcome killAtCall(int call, const std::string& arguments) {
-    return shell("LD_PRELOAD=" ETENDUE_UNKIND_MACHINE " UNKIND_KILL=" + std::to_string(call) + " " +
-                 ETENDUE_COMMAND + " " + arguments);
-}
-
 std::uint32_t samplesHeld(const fs::path& part) {
     return fs::exists(part) ? static_cast<std::uint32_t>(readPartInfo(part).ranges.count()) : 0;
 }

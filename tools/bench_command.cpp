@@ -53,6 +53,10 @@ public:
         : command_(command),
           scenes_(scenesCalled(command.scenes, command.folder)),
           pairs_(pairsOf(command)) {
+        if (isEstimatorKindSet(command.overrides))
+            throw InputError(
+                "-s estimator.kind: has no effect; --estimators names what is compared",
+                ExitCode::usage);
         for (const std::string& name : command.cameras)
             cameras_.push_back(cameraCalled(name, command.folder));
         settings_.seeds = command.seeds;

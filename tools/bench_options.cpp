@@ -92,7 +92,7 @@ void addAgreement(CLI::App& bench, Chosen& chosen) {
     addSize(agreement, c.size, "Pixels of the pictures; default: 48,32");
     addSeed(agreement, c.firstSeed);
     addThreads(agreement, c.threads);
-    addOverrides(agreement, c.overrides);
+    addSet(agreement, c.overrides);
     agreement->add_flag("--json", c.asJson, "Print JSON");
     agreement->callback(
         [&chosen, command] { chosen = [command] { return runAgreement(*command); }; });

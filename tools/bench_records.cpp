@@ -202,7 +202,24 @@ void take(const Parsed& json, BenchRecords& records) {
         throw std::invalid_argument(fmt::format("no record is of the kind \"{}\"", kind));
 }
 
+bool isLastRunThereTwice(const BenchRecords& records) {
+    if (records.runs.empty()) return false;
+    const BenchRun& last = records.runs.back();
+    return records.find(last.configuration, last.seed) != &last;
+}
+
 }  // namespace
+
+std::string titleOf(const BenchConfiguration& c) {
+    return fmt::format("{}, {}, {}{}{}", c.scene, c.camera, c.variant,
+                       c.variant.empty() ? "" : ", ", c.estimator);
+}
+
+const BenchRun* BenchRecords::find(const BenchConfiguration& configuration, int seed) const {
+    for (const BenchRun& run : runs)
+        if (run.seed == seed && run.configuration == configuration) return &run;
+    return nullptr;
+}
 
 BenchRecords readBenchRecords(const std::filesystem::path& file) {
     BenchRecords records;
@@ -219,6 +236,12 @@ BenchRecords readBenchRecords(const std::filesystem::path& file) {
             throw InputError(fmt::format("{}:{}: not a record of a benchmark: {}", file.string(),
                                          line, error.what()));
         }
+        if (isLastRunThereTwice(records))
+            throw InputError(
+                fmt::format("{}:{}: {}, seed {} is there twice; take another folder or remove this "
+                            "one",
+                            file.string(), line, titleOf(records.runs.back().configuration),
+                            records.runs.back().seed));
         ++line;
     }
     if (begin != bytes.size()) std::filesystem::resize_file(file, begin);

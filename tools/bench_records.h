@@ -24,6 +24,8 @@ struct BenchConfiguration {
     std::string scene, camera, variant, estimator;
     bool operator==(const BenchConfiguration&) const = default;
 };
+/// "cornell-box, double-gauss, 32 terms, bdpt".
+std::string titleOf(const BenchConfiguration& configuration);
 
 /// One progressive render.
 struct BenchRun {
@@ -72,11 +74,14 @@ struct BenchRecords {
     std::vector<BenchLens> lenses;
     std::vector<BenchFitError> fitErrors;
     std::vector<BenchRun> runs;
+
+    /// Null if there is none.
+    const BenchRun* find(const BenchConfiguration& configuration, int seed) const;
 };
 
 /// Empty for a file that is not there. A last line that was cut short is left out and removed from
 /// the file: it was never finished. Throws InputError (file, line) for any other line that is not
-/// of the schema.
+/// of the schema, and for a run that is there twice, which would count as two independent ones.
 BenchRecords readBenchRecords(const std::filesystem::path& file);
 
 /// Appends a line and syncs the file. Throws std::system_error.

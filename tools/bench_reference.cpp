@@ -83,28 +83,52 @@ struct CacheFiles {
     std::filesystem::path facts;  // written last: it is there if all is
 };
 
-Picture pixelsOf(const std::filesystem::path& file) {
-    return std::get<std::vector<float>>(readImage(file).pixels);
+Picture pixelsOf(const std::filesystem::path& file, const FilmSettings& film) {
+    Image image = readImage(file);
+    if (image.width != film.width || image.height != film.height || image.channels != 3)
+        throw InputError(fmt::format("{}: expected {} × {} pixels in colour", file.string(),
+                                     film.width, film.height));
+    return std::get<std::vector<float>>(std::move(image.pixels));
 }
 
-std::optional<Reference> cached(const CacheFiles& files, const std::string& key) {
+/// Empty if it is not there. Throws if it is, but cannot be read.
+std::optional<Reference> cached(const CacheFiles& files, const std::string& key,
+                                const FilmSettings& film) {
     std::error_code error;
     if (!std::filesystem::exists(files.facts, error)) return {};
     const BenchRecords records = readBenchRecords(files.facts);
     if (records.references.empty() || records.references.front().key != key) return {};
     const BenchReference& facts = records.references.front();
-    return Reference{{pixelsOf(files.picture), pixelsOf(files.variance), facts.relMse},
+    return Reference{{pixelsOf(files.picture, film), pixelsOf(files.variance, film), facts.relMse},
                      facts.samples,
                      facts.seconds,
                      key};
 }
 
 void keep(const CacheFiles& files, const Reference& reference, const FilmSettings& film) {
-    std::filesystem::create_directories(files.facts.parent_path());
+    std::error_code failed;  // which writing tells
+    std::filesystem::create_directories(files.facts.parent_path(), failed);
+    std::filesystem::remove(files.facts);  // of pictures that could not be read
     writeExr(files.picture, film.fullFrame(), {{{"R", "G", "B"}, reference.mean.pixels}}, {});
     writeExr(files.variance, film.fullFrame(), {{{"R", "G", "B"}, reference.mean.variance}}, {});
     appendRecord(files.facts, BenchReference{"", "", "", reference.key, reference.samples,
                                              reference.seconds, reference.mean.relMse});
+}
+
+std::optional<Reference> renderReference(const LoadedScene& loaded,
+                                         const BenchReferenceSettings& settings,
+                                         const std::function<bool(double)>& goOn) {
+    Parts parts(loaded, settings);
+    const auto start = std::chrono::steady_clock::now();
+    const auto listen = [&] {
+        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+        return goOn(std::min(1.0, spent.count() / settings.seconds));
+    };
+    // Each round costs half of what was spent before: enough of them to end near the time, few
+    // enough that their number does not cost.
+    while (parts.samples() == 0 || 1.25 * parts.seconds() < settings.seconds)
+        if (!parts.add(std::max(1u, parts.samples() / 2), listen)) return {};
+    return parts.mean();
 }
 
 }  // namespace
@@ -117,24 +141,27 @@ std::filesystem::path referenceCacheDirectory() {
 std::optional<Reference> referenceFor(const LoadedScene& loaded,
                                       const BenchReferenceSettings& settings,
                                       const std::filesystem::path& directory,
-                                      const std::function<bool(double)>& goOn) {
+                                      const std::function<bool(double)>& goOn,
+                                      const std::function<void(const std::string&)>& notice) {
+    const auto tell = [&](const std::string& sentence) {
+        if (notice) notice(sentence);
+    };
     const std::string key = keyOf(loaded, settings);
     const CacheFiles files(directory, key);
-    if (!directory.empty())
-        if (auto reference = cached(files, key)) return reference;
-    Parts parts(loaded, settings);
-    const auto start = std::chrono::steady_clock::now();
-    const auto listen = [&] {
-        const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-        return goOn(std::min(1.0, spent.count() / settings.seconds));
-    };
-    // Each round costs half of what was spent before: enough of them to end near the time, few
-    // enough that their number does not cost.
-    while (parts.samples() == 0 || 1.25 * parts.seconds() < settings.seconds)
-        if (!parts.add(std::max(1u, parts.samples() / 2), listen)) return {};
-    Reference reference = parts.mean();
-    reference.key = key;
-    if (!directory.empty()) keep(files, reference, loaded.film);
+    try {
+        if (!directory.empty())
+            if (auto reference = cached(files, key, loaded.film)) return reference;
+    } catch (const std::exception& error) {
+        tell(std::string(error.what()) + "; the reference is rendered again");
+    }
+    std::optional<Reference> reference = renderReference(loaded, settings, goOn);
+    if (!reference) return {};
+    reference->key = key;
+    try {
+        if (!directory.empty()) keep(files, *reference, loaded.film);
+    } catch (const std::exception& error) {
+        tell(std::string("the reference is not kept: ") + error.what());
+    }
     return reference;
 }
 

@@ -30,10 +30,12 @@ std::filesystem::path referenceCacheDirectory();
 /// From `directory`, else a new one, which is then kept there. It is the mean of 16 independent
 /// pictures of equal counts, whose spread tells its error; they get further samples until the time
 /// is over, but never by how they look. `goOn` hears which share is done and returns false to give
-/// up; then the result is empty. Its seeds are none that a benchmark uses.
+/// up; then the result is empty. Its seeds are none that a benchmark uses. `notice` hears in a
+/// sentence what went wrong in `directory`: a reference that could not be read, or not be kept.
 std::optional<Reference> referenceFor(const LoadedScene& loaded,
                                       const BenchReferenceSettings& settings,
                                       const std::filesystem::path& directory,
-                                      const std::function<bool(double)>& goOn);
+                                      const std::function<bool(double)>& goOn,
+                                      const std::function<void(const std::string&)>& notice = {});
 
 }  // namespace etendue

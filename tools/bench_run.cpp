@@ -14,6 +14,7 @@
 #include "tools/progressive_render.h"
 #include "tools/stop_request.h"
 #include "tools/version.h"
+#include "tools/write_file.h"
 
 namespace etendue {
 
@@ -29,22 +30,27 @@ public:
           folder_(folder),
           records_(readBenchRecords(folder.records())),
           bar_(suite.runCount(), suite.seconds) {
-        std::filesystem::create_directories(folder.path / "pictures");
+        makeFolder(folder.path / "pictures");
         if (records_.header)
             checkHeader();
         else
-            begin();
+            header_ = newHeader();
     }
 
     bool run() {
+        if (!checkAll()) return false;
+        if (header_) appendRecord(folder_.records(), *header_);
         for (const BenchView& view : suite_.views)
-            if (!isDone(view) && !runView(view)) return false;
+            if (isDone(view))
+                skip(view);
+            else if (!runView(view))
+                return false;
         bar_.clear();
         return true;
     }
 
 private:
-    void begin() {
+    BenchHeader newHeader() const {
         const Machine machine = thisMachine();
         BenchHeader header;
         header.title = suite_.title;
@@ -60,7 +66,7 @@ private:
         header.system = machine.system;
         header.threads = settings_.threads;
         header.load = machineLoad();
-        appendRecord(folder_.records(), header);
+        return header;
     }
 
     void checkHeader() const {
@@ -75,12 +81,6 @@ private:
         if (header.threads != settings_.threads) refuse(fmt::format("{} threads", header.threads));
     }
 
-    const BenchRun* find(const BenchConfiguration& configuration, int seed) const {
-        for (const BenchRun& run : records_.runs)
-            if (run.seed == seed && run.configuration == configuration) return &run;
-        return nullptr;
-    }
-
     template <class Visit>
     void forEachRun(const BenchView& view, const Visit& visit) const {
         for (int seed = 0; seed < suite_.seeds; ++seed)
@@ -91,18 +91,48 @@ private:
                           v, seed);
     }
 
-    bool isDone(const BenchView& view) {
+    bool isDone(const BenchView& view) const {
         std::size_t done = 0, all = 0;
         forEachRun(view, [&](const BenchConfiguration& configuration, std::size_t, int seed) {
             ++all;
-            if (find(configuration, seed)) ++done;
+            if (records_.find(configuration, seed)) ++done;
         });
         const bool wantsTechniques = hasTechniques(view);
-        const bool isWhole = all > 0 && done == all &&
-                             (!wantsTechniques || std::filesystem::exists(folder_.techniques(
-                                                      view.scene.name, view.camera.name)));
-        if (isWhole) bar_.skipJobs(all);
-        return isWhole;
+        return all > 0 && done == all &&
+               (!wantsTechniques ||
+                std::filesystem::exists(folder_.techniques(view.scene.name, view.camera.name)));
+    }
+
+    void skip(const BenchView& view) {
+        forEachRun(view, [&](const BenchConfiguration&, std::size_t, int) { bar_.skipJobs(1); });
+    }
+
+    /// Loads all that is to be measured or was, so that a mistake in the last view is told before
+    /// the first one is measured. One at a time, since scenes may be large. False if a signal came.
+    bool checkAll() {
+        for (const BenchView& view : suite_.views) {
+            bar_.update(titleOf(view.scene, view.camera) + ": is loaded, to check it", 0.0);
+            const std::string hash = load(view, {}).hash;
+            for (const BenchVariant& variant : view.variants) {
+                if (isStopRequested()) return false;
+                checkUnchanged(view, variant,
+                               variant.overrides.empty() ? hash : load(view, variant).hash);
+            }
+        }
+        return true;
+    }
+
+    void checkUnchanged(const BenchView& view, const BenchVariant& variant,
+                        const std::string& hash) const {
+        for (const BenchRun& run : records_.runs) {
+            const BenchConfiguration& c = run.configuration;
+            if (c.scene == view.scene.name && c.camera == view.camera.name &&
+                c.variant == variant.name && run.sceneHash != hash)
+                throw InputError(fmt::format(
+                    "{}: holds results of {} as it was before it was changed; take another "
+                    "folder or remove this one",
+                    folder_.records().string(), view.scene.file.string()));
+        }
     }
 
     bool hasTechniques(const BenchView& view) const {
@@ -110,23 +140,30 @@ private:
                                                    "bdpt") != view.estimators.end();
     }
 
-    LoadedScene load(const BenchView& view, const std::vector<std::string>& overrides) {
+    LoadedScene load(const BenchView& view, const BenchVariant& variant) {
         ViewOptions options{view.overrides, suite_.width, suite_.height, settings_.threads, true};
-        options.overrides.insert(options.overrides.end(), overrides.begin(), overrides.end());
-        return loadView(view.scene, view.camera, options, bar_);
+        options.overrides.insert(options.overrides.end(), variant.overrides.begin(),
+                                 variant.overrides.end());
+        try {
+            return loadView(view.scene, view.camera, options, bar_);
+        } catch (const InputError& error) {
+            bar_.clear();
+            failLoading(view, variant, error);
+        }
     }
 
     bool runView(const BenchView& view) {
         std::vector<LoadedScene> variants;
         for (const BenchVariant& variant : view.variants) {
-            variants.push_back(load(view, variant.overrides));
+            variants.push_back(load(view, variant));
+            checkUnchanged(view, variant, variants.back().hash);
             recordLens(view, variant, variants.back());
         }
         // The scene as it is, which often is the first variant; a lens of glass by its exact trace.
         std::optional<LoadedScene> other;
         if (!view.variants.front().overrides.empty()) other = load(view, {});
         const bool isFitted = (other ? *other : variants.front()).fit.has_value();
-        if (isFitted) other = load(view, {"camera.representation=traced"});
+        if (isFitted) other = load(view, {"", {"camera.representation=traced"}});
         const LoadedScene& truth = other ? *other : variants.front();
         if (suite_.wantsFitErrors && isFitted && !recordFitErrors(view, truth, variants))
             return false;
@@ -136,16 +173,10 @@ private:
         bool goesOn = true;
         forEachRun(view, [&](const BenchConfiguration& configuration, std::size_t v, int seed) {
             if (!goesOn) return;
-            if (const BenchRun* run = find(configuration, seed)) {
-                if (run->sceneHash != variants[v].hash)
-                    throw InputError(fmt::format(
-                        "{}: holds results of {} as it was before it was changed; take another "
-                        "folder or remove this one",
-                        folder_.records().string(), view.scene.file.string()));
+            if (records_.find(configuration, seed))
                 bar_.skipJobs(1);
-                return;
-            }
-            goesOn = runOne(configuration, seed, variants[v], *reference);
+            else
+                goesOn = runOne(configuration, seed, variants[v], *reference);
         });
         if (goesOn && hasTechniques(view)) goesOn = renderTechniques(view, variants.front());
         return goesOn;
@@ -207,11 +238,16 @@ private:
         const std::string title = titleOf(view.scene, view.camera) + ": reference";
         const BenchReferenceSettings settings{suite_.referenceEstimator, suite_.referenceSeconds,
                                               settings_.threads};
+        const auto goOn = [&](double share) {
+            bar_.update(fmt::format("{} {:.0f} %", title, 100.0 * share), 0.0);
+            return !isStopRequested();
+        };
+        const auto notice = [&](const std::string& sentence) {
+            bar_.clear();
+            say(fmt::format("note: {}\n", sentence));
+        };
         const std::optional<Reference> reference =
-            referenceFor(truth, settings, referenceCacheDirectory(), [&](double share) {
-                bar_.update(fmt::format("{} {:.0f} %", title, 100.0 * share), 0.0);
-                return !isStopRequested();
-            });
+            referenceFor(truth, settings, referenceCacheDirectory(), goOn, notice);
         if (!reference) return {};
         const auto isSame = [&](const BenchReference& r) {
             return r.scene == view.scene.name && r.camera == view.camera.name &&
@@ -231,9 +267,7 @@ private:
 
     bool runOne(const BenchConfiguration& configuration, int seed, const LoadedScene& loaded,
                 const Picture& reference) {
-        const std::string title = fmt::format(
-            "{}, {}, {}{}{}", configuration.scene, configuration.camera, configuration.variant,
-            configuration.variant.empty() ? "" : ", ", configuration.estimator);
+        const std::string title = titleOf(configuration);
         const double load = machineLoad();
         const ProgressiveSettings settings{configuration.estimator, suite_.seconds,
                                            suite_.mostSamples, static_cast<std::uint64_t>(seed),
@@ -281,6 +315,7 @@ private:
     const BenchRunSettings& settings_;
     const BenchFolder& folder_;
     BenchRecords records_;
+    std::optional<BenchHeader> header_;  // of new records
     JobBar bar_;
 };
 

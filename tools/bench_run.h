@@ -17,7 +17,9 @@ struct BenchRunSettings {
 ///
 /// Runs of one view are interleaved: every estimator and variant with the first seed, then with the
 /// second … so that what the machine does besides meets all of them alike. Only rendering is timed.
-/// Throws InputError if the folder holds results of another suite, program or scene.
+/// Throws InputError if the folder holds results of another suite, program or scene, and for a
+/// scene that cannot be loaded; a new folder then gets no records. Nobody else may be writing
+/// there.
 bool runBench(const BenchSuite& suite, const BenchRunSettings& settings, const BenchFolder& folder);
 
 }  // namespace etendue

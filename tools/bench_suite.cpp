@@ -14,10 +14,47 @@ std::vector<std::string> textsOr(const ConfigTable& table, const char* key,
     return table.has(key) ? table.texts(key) : fallback;
 }
 
+/// Throws the error at the one of the table's overrides that it names. Returns if it names none.
+void failOverride(const ConfigTable& table, const std::vector<std::string>& overrides,
+                  const InputError& error) {
+    const std::string message = error.what();
+    for (std::size_t i = 0; i < overrides.size(); ++i) {
+        const std::string option = overrideName(overrides[i]);
+        if (message.starts_with(option + ": "))  // which nobody has typed
+            table.failEntry("set", i, message.substr(option.size() + 2), error.code());
+        if (message.find("named by " + option + ", ") != std::string::npos)
+            table.failEntry("set", i, message, error.code());
+    }
+}
+
+std::vector<std::string> loadOverrides(const ConfigTable& table) {
+    std::vector<std::string> overrides = table.texts("set");
+    bool setsKind = false;
+    try {
+        setsKind = isEstimatorKindSet(overrides);
+    } catch (const InputError& error) {
+        failOverride(table, overrides, error);
+        throw;
+    }
+    if (setsKind)
+        table.fail("set", "estimator.kind has no effect; the group's estimators are compared");
+    return overrides;
+}
+
+/// What `find` finds by the names under the key.
+template <class Find>
+auto findNamed(const ConfigTable& table, const char* key, const Find& find) {
+    try {
+        return find();
+    } catch (const InputError& error) {
+        table.fail(key, error.what(), error.code());
+    }
+}
+
 std::vector<BenchVariant> loadVariants(const ConfigTable& group) {
     std::vector<BenchVariant> variants;
     for (const ConfigTable& table : group.tables("variant")) {
-        BenchVariant variant{table.text("name"), table.texts("set")};
+        BenchVariant variant{table.text("name"), loadOverrides(table), table};
         table.finish();
         for (const BenchVariant& other : variants)
             if (other.name == variant.name) table.fail("name", "is another variant's, too");
@@ -37,24 +74,24 @@ std::vector<std::string> loadEstimators(const ConfigTable& group) {
     return estimators;
 }
 
-bool isSameView(const BenchView& a, const BenchView& b) {
-    return a.scene.name == b.scene.name && a.camera.name == b.camera.name;
+bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code ignored;  // the scene's own camera has no file
+    return a == b || std::filesystem::equivalent(a, b, ignored);
 }
 
 void loadGroup(const ConfigTable& group, const std::filesystem::path& folder, BenchSuite& suite) {
     BenchView view;
-    view.overrides = group.texts("set");
+    view.group = group;
+    view.overrides = loadOverrides(group);
     view.variants = loadVariants(group);
     view.estimators = loadEstimators(group);
     const std::vector<std::string> scenes = group.texts("scenes");
-    for (const NamedFile& scene : scenesCalled(scenes, folder))
+    for (const NamedFile& scene :
+         findNamed(group, "scenes", [&] { return scenesCalled(scenes, folder); }))
         for (const std::string& camera : textsOr(group, "cameras", {"own"})) {
             view.scene = scene;
-            view.camera = cameraCalled(camera, folder);
-            for (const BenchView& other : suite.views)
-                if (isSameView(view, other))
-                    group.fail("scenes", fmt::format("{} is in another group, too",
-                                                     titleOf(view.scene, view.camera)));
+            view.camera = findNamed(group, "cameras", [&] { return cameraCalled(camera, folder); });
+            if (const auto clash = nameClash(suite, view)) group.fail("scenes", *clash);
             suite.views.push_back(view);
         }
     group.finish();
@@ -84,6 +121,32 @@ std::string BenchSuite::key() const {
         text += "\n";
     }
     return contentHash({}, {text});
+}
+
+std::optional<std::string> nameClash(const BenchSuite& suite, const BenchView& view) {
+    for (const BenchView& other : suite.views) {
+        for (const auto file : {&BenchView::scene, &BenchView::camera}) {
+            const NamedFile &a = other.*file, &b = view.*file;
+            if (a.name == b.name && !isSameFile(a.file, b.file))
+                return fmt::format("{} and {} are both called \"{}\"", a.file.string(),
+                                   b.file.string(), a.name);
+        }
+        if (other.scene.name == view.scene.name && other.camera.name == view.camera.name)
+            return titleOf(view.scene, view.camera) + " is there twice";
+    }
+    return {};
+}
+
+void failLoading(const BenchView& view, const BenchVariant& variant, const InputError& error) {
+    if (!view.group) throw error;
+    if (variant.table && !variant.overrides.empty()) {
+        failOverride(*variant.table, variant.overrides, error);
+        variant.table->fail("set", error.what(), error.code());
+    }
+    failOverride(*view.group, view.overrides, error);
+    const std::string message = error.what(), camera = view.camera.file.string();
+    const bool isCamera = !camera.empty() && message.find(camera) != std::string::npos;
+    view.group->failNamedFile(isCamera ? "cameras" : "scenes", error);
 }
 
 BenchSuite loadBenchSuite(const std::filesystem::path& file) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,9 @@ namespace etendue {
 
 /// A setting of the scene under which the same picture is rendered, such as the terms of a lens.
 struct BenchVariant {
-    std::string name;                    // empty: the scene as it is
-    std::vector<std::string> overrides;  // "key=value"
+    std::string name;                       // empty: the scene as it is
+    std::vector<std::string> overrides;     // "key=value"
+    std::optional<ConfigTable> table = {};  // of a suite's file, if it is there
 };
 
 /// What is compared with each other: one scene through one camera.
@@ -23,6 +25,7 @@ struct BenchView {
     std::vector<std::string> overrides;  // of the reference, too
     std::vector<BenchVariant> variants;
     std::vector<std::string> estimators;
+    std::optional<ConfigTable> group = {};  // of a suite's file; none: named on the command line
 };
 
 struct BenchSuite {
@@ -42,6 +45,16 @@ struct BenchSuite {
     std::string key() const;
     std::size_t runCount() const;
 };
+
+/// Why the view cannot be one more of the suite's, in words: results are kept by names, and it has
+/// another's.
+std::optional<std::string> nameClash(const BenchSuite& suite, const BenchView& view);
+
+/// Throws the error, met when the view was loaded under the variant, with the line and key of the
+/// suite that ask for what is wrong. The view without a variant's overrides is known to be right by
+/// the time that one with some is loaded.
+[[noreturn]] void failLoading(const BenchView& view, const BenchVariant& variant,
+                              const InputError& error);
 
 /// Throws InputError for what the file says amiss, and for names of scenes and cameras that are not
 /// there. Scenes and cameras by name are those of the folder above the file's, or of its `folder`.

@@ -95,6 +95,13 @@ LoadedScene loadShowingFit(const std::filesystem::path& scene, LoadOptions optio
     return loaded;
 }
 
+bool isEstimatorKindSet(const std::vector<std::string>& overrides) {
+    Config config;
+    for (const std::string& assignment : overrides) config.set(assignment);
+    const ConfigTable root = config.root();
+    return root.has("estimator") && root.table("estimator").has("kind");
+}
+
 LoadedScene loadView(const NamedFile& scene, const NamedFile& camera, const ViewOptions& view,
                      JobBar& bar) {
     LoadOptions options;

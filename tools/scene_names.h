@@ -44,6 +44,8 @@ struct ViewOptions {
     int threads = 1;
     bool ownCameraDisperses = false;  // where the scene's own camera does not say
 };
+/// Whether they set estimator.kind, which does nothing where a command names the estimators itself.
+bool isEstimatorKindSet(const std::vector<std::string>& overrides);
 /// Loads it; a lens that must be fitted tells the bar how far that is.
 LoadedScene loadView(const NamedFile& scene, const NamedFile& camera, const ViewOptions& options,
                      JobBar& bar);

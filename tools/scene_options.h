@@ -31,12 +31,16 @@ inline void addPreview(CLI::App* command, Preview& preview) {
         ->type_name("STOPS");
 }
 
-/// And a name of its own for the override that is wanted most. CLI11 takes options in the order in
-/// which they are added here: --set has filled `overrides` by the time that --estimator adds to it.
-inline void addOverrides(CLI::App* command, std::vector<std::string>& overrides) {
+inline void addSet(CLI::App* command, std::vector<std::string>& overrides) {
     command->add_option("-s,--set", overrides, "Override any key of the scene; may be repeated")
         ->allow_extra_args(false)
         ->type_name("KEY=VALUE");
+}
+
+/// And a name of its own for the override that is wanted most. CLI11 takes options in the order in
+/// which they are added here: --set has filled `overrides` by the time that --estimator adds to it.
+inline void addOverrides(CLI::App* command, std::vector<std::string>& overrides) {
+    addSet(command, overrides);
     command
         ->add_option_function<std::string>(
             "--estimator",

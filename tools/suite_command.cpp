@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "renderer/estimator.h"
+#include "renderer/output_lock.h"
 #include "renderer/parallel.h"
 #include "tools/bench_report.h"
 #include "tools/bench_run.h"
@@ -29,13 +30,17 @@ BenchSuite suiteOfScenes(const SuiteCommand& command) {
     const std::vector<std::string> cameras =
         command.cameras.empty() ? std::vector<std::string>{"own"} : command.cameras;
     for (const NamedFile& scene : scenesCalled(command.inputs, command.folder))
-        for (const std::string& camera : cameras)
-            suite.views.push_back(
-                {scene,
-                 cameraCalled(camera, command.folder),
-                 {},
-                 {BenchVariant{}},
-                 command.estimators.empty() ? estimatorKinds() : command.estimators});
+        for (const std::string& camera : cameras) {
+            const BenchView view{
+                scene,
+                cameraCalled(camera, command.folder),
+                {},
+                {BenchVariant{}},
+                command.estimators.empty() ? estimatorKinds() : command.estimators};
+            if (const auto clash = nameClash(suite, view))
+                throw InputError(*clash, ExitCode::usage);
+            suite.views.push_back(view);
+        }
     return suite;
 }
 
@@ -63,10 +68,16 @@ BenchSuite suiteFor(const SuiteCommand& command) {
 ExitCode runSuite(const SuiteCommand& command) {
     const BenchSuite suite = suiteFor(command);
     const BenchFolder folder{command.output};
+    makeFolder(folder.path);
+    const OutputLock lock(folder.records());
     heedStopRequests();
     const bool isComplete =
         runBench(suite, {command.commandLine, command.threads.value_or(hardwareThreads())}, folder);
     const BenchRecords records = readBenchRecords(folder.records());
+    if (!records.header) {
+        say("stopped early: nothing has been measured\n");
+        return ExitCode::stoppedEarly;
+    }
     const std::vector<BenchResult> results = summarizeBench(records, suite.targetRelMse);
     fmt::print("{}", benchText(results, records, suite.targetRelMse));
     writeWholeFile(folder.path / "results.csv", csvOf(records.runs));

@@ -105,6 +105,18 @@ TEST_CASE("Bench agreement: names that do not exist are told with the nearest th
     CHECK(run("bench").code == 64);
 }
 
+TEST_CASE("Bench agreement: the estimator of a scene is not set, where it would have no effect") {
+    const Scenes scenes;
+    const Outcome option = run(scenes.arguments() + " --estimator lt", "timeout 5");
+    CHECK(option.code == 64);
+    CHECK(contains(option.output, "--estimator"));
+    for (const char* set : {"estimator.kind=lt", "'estimator . kind = \"lt\"'"}) {
+        const Outcome outcome = run(scenes.arguments() + " -s " + set, "timeout 5");
+        CHECK(outcome.code == 64);
+        CHECK(contains(outcome.output, "-s estimator.kind: has no effect; --estimators names"));
+    }
+}
+
 TEST_CASE("Bench agreement: a scene that cannot be loaded costs its own rows only") {
     const Scenes scenes;
     std::filesystem::create_directories(scenes.folder / "a-bad-one");

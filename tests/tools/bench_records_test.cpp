@@ -94,6 +94,21 @@ TEST_CASE("Bench records: any other line is refused by its number") {
     }
 }
 
+TEST_CASE("Bench records: a run that is there twice is refused by the number of its line") {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder / "results.jsonl";
+    BenchRun other = exampleRun(0);
+    other.configuration.estimator = "pt";
+    for (const BenchRun& run : {exampleRun(0), exampleRun(1), other}) appendRecord(file, run);
+    CHECK(readBenchRecords(file).runs.size() == 3);
+    appendRecord(file, exampleRun(1));
+    appendRecord(file, exampleRun(2));
+    CHECK_THROWS_WITH_AS(
+        readBenchRecords(file),
+        doctest::Contains("results.jsonl:4: box, wide, 8 \"terms\", bdpt, seed 1 is there twice"),
+        InputError);
+}
+
 TEST_CASE("Bench records: the table has a row for each checkpoint") {
     const std::string csv = csvOf({exampleRun(3)});
     CHECK(csv.find("\"box\",\"wide\",\"8 \"\"terms\"\"\",bdpt,3,2,0.30000000000000004,0.5,1,1.5,2,"

@@ -26,6 +26,16 @@ intensity = [9, 8, 7]
 
 const auto patiently = [](double) { return true; };
 
+/// Of a scene by the same settings, and all that was said on the way.
+struct Told {
+    Told(const LoadedScene& loaded, const std::filesystem::path& directory)
+        : reference(referenceFor(loaded, {"pt", 0.01, 1}, directory, patiently,
+                                 [this](const std::string& sentence) { notices += sentence; })
+                        .value()) {}
+    std::string notices;
+    Reference reference;
+};
+
 }  // namespace
 
 TEST_CASE("Bench reference: its error is what it says") {
@@ -77,6 +87,36 @@ TEST_CASE("Bench reference: rendered once, and anew for whatever it depends on")
     CHECK(keyOf(loaded, {"pt", 0.02, 1}) != first.key);
     CHECK(keyOf(loaded, {"pt", 0.01, 2}) == first.key);
     CHECK(keyOf(sceneFromText(scene, {"film.width=25"}), settings) != first.key);
+}
+
+TEST_CASE("Bench reference: what is damaged of a kept one is rendered again, and kept again") {
+    const TemporaryFolder cache;
+    const LoadedScene loaded = sceneFromText(scene);
+    const std::string key = Told(loaded, cache.path()).reference.key;
+    const auto check = [&](const std::string& name, const std::string& what) {
+        CAPTURE(name);
+        const std::string notices = Told(loaded, cache.path()).notices;
+        CAPTURE(notices);
+        CHECK(notices.find(key + name + ":") != std::string::npos);
+        CHECK(notices.find(what + "; the reference is rendered again") != std::string::npos);
+        CHECK(Told(loaded, cache.path()).notices.empty());
+    };
+    std::filesystem::remove(cache / (key + ".variance.exr"));
+    check(".variance.exr", "no such file");
+    cache.write(key + ".exr", "nonsense");
+    check(".exr", "");
+    writeExr(cache / (key + ".exr"), {1, 1, 0, 0, 1, 1}, {{{"R", "G", "B"}, {1, 1, 1}}}, {});
+    check(".exr", "expected 30 × 20 pixels in colour");
+    cache.write(key + ".jsonl", "nonsense\n");
+    check(".jsonl", "");
+}
+
+TEST_CASE("Bench reference: one that cannot be kept is told of, and is there all the same") {
+    const LoadedScene loaded = sceneFromText(scene);
+    const Told told(loaded, "/proc/nope/references");
+    CHECK(told.reference.mean.pixels.size() == 3 * 30 * 20);
+    CHECK(told.notices.find("the reference is not kept: /proc/nope/references/") == 0);
+    CHECK(told.notices.find("No such file or directory") != std::string::npos);
 }
 
 TEST_CASE("Bench reference: given up, it is not kept") {

@@ -80,17 +80,46 @@ TEST_CASE("Bench suite: its key changes with whatever its results depend on") {
 TEST_CASE("Bench suite: mistakes are named with their line") {
     Files files;
     CHECK(has(files.refusal("[suite]\n"), "group"));
-    CHECK(has(files.refusal("[[group]]\nscenes = \"bix\"\n"), "did you mean \"box\""));
-    CHECK(has(files.refusal("[[group]]\ncameras = [\"wise\"]\n"), "did you mean \"wide\""));
+    const std::string scene = files.refusal("[[group]]\nscenes = \"bix\"\n");
+    CHECK(has(scene, "suite.toml:2: group[0].scenes: no scene \"bix\" in "));
+    CHECK(has(scene, "did you mean \"box\""));
+    const std::string camera = files.refusal("[[group]]\ncameras = [\"wise\"]\n");
+    CHECK(has(camera, "suite.toml:2: group[0].cameras: no camera \"wise\" in "));
+    CHECK(has(camera, "did you mean \"wide\""));
     CHECK(has(files.refusal("[[group]]\nestimators = [\"vcm\"]\n"),
               "suite.toml:2: group[0].estimators: no estimator is called \"vcm\""));
     CHECK(has(files.refusal("[suite]\nseeds = 1\n[[group]]\n"), "suite.toml:2: suite.seeds"));
     CHECK(has(files.refusal("[suite]\nseed = 4\n[[group]]\n"), "did you mean 'seeds'"));
     CHECK(has(files.refusal("[[group]]\nscenes = \"box\"\n[[group]]\nscenes = \"box\"\n"),
-              "box, own is in another group, too"));
+              "suite.toml:4: group[1].scenes: box, own is there twice"));
     CHECK(has(files.refusal("[[group]]\n[[group.variant]]\nname = \"a\"\n[[group.variant]]\nname = "
                             "\"a\"\n"),
               "another variant's"));
+    CHECK(has(files.refusal("[[group]]\nset = [\"film.filter=box\", \"estimator.kind=lt\"]\n"),
+              "suite.toml:2: group[0].set: estimator.kind has no effect"));
+    CHECK(has(files.refusal("[[group]]\n[[group.variant]]\nname = \"a\"\nset = "
+                            "[\"estimator = {kind = 'lt'}\"]\n"),
+              "suite.toml:4: group[0].variant[0].set (\"a\"): estimator.kind has no effect"));
+    CHECK(has(files.refusal("[[group]]\nset = [\"film.width=3\",\n\"film.filter\"]\n"),
+              "suite.toml:3: group[0].set[1]: expected key=value"));
+}
+
+TEST_CASE("Bench suite: two files of one name are refused, since results are kept by names") {
+    Files files;
+    std::filesystem::create_directories(files.folder / "more/box");
+    files.folder.write("more/box/scene.toml", "");
+    const std::string other = (files.folder / "more/box/scene.toml").string();
+    const std::string message = files.refusal("[[group]]\nscenes = [\"box\", \"" + other + "\"]\n");
+    CHECK(has(message, "suite.toml:2: group[0].scenes: "));
+    CHECK(has(message, "box/scene.toml and " + other + " are both called \"box\""));
+    // Also through another camera, where no records clash, but where nobody could tell them apart.
+    CHECK(has(
+        files.refusal("[[group]]\nscenes = \"box\"\n[[group]]\ncameras = \"wide\"\nscenes = \"" +
+                      other + "\"\n"),
+        "are both called \"box\""));
+    const std::string same = (files.folder / "suites/../box/scene.toml").string();
+    CHECK(files.refusal("[[group]]\nscenes = \"box\"\n[[group]]\ncameras = \"wide\"\nscenes = \"" +
+                        same + "\"\n") == "accepted");
 }
 
 TEST_CASE("Bench suite: those in scenes/suites are right") {

@@ -140,7 +140,8 @@ TEST_CASE(
     r.folder.write("scenes/cameras/wide.toml", "[camera]\nmodel = \"pinhole\"\nfov = 80\n");
 }
 
-TEST_CASE("Bench regress: what cannot be used is told once, with its name") {
+TEST_CASE("Bench regress: what cannot be used is told once, with its name" *
+          doctest::test_suite("slow")) {
     const Regression& r = regression();
     r.folder.write("data/baseline.toml", "");
     const std::string reference = readFile(r.folder / r.referenceName);

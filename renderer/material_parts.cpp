@@ -105,7 +105,8 @@ bool isGlass(const ObjMaterial& m) {
 /// Metals have one colour all over.
 Spectrum metalColor(const ObjMaterial& m, LoadingScene& loading) {
     if (m.diffuseMap.empty()) return reflectance(m.diffuse, m, "Kd", loading);
-    loading.notes.push_back("material '" + m.name + "' is a metal: only the mean of its map_Kd counts");
+    loading.notes.push_back("material '" + m.name +
+                            "' is a metal: only the mean of its map_Kd counts");
     return loadTexture(m.diffuseMap, TextureUse::reflectance, loading)->average();
 }
 

@@ -122,6 +122,11 @@ void AtomicFile::commitKeeping(const fs::path& previous) {
     syncFolder(folderOf(target_), file_);
 }
 
+bool isWrittenDirectly(const fs::path& file) {
+    std::error_code error;
+    return fs::exists(file, error) && !fs::is_regular_file(file, error);
+}
+
 void writeFileAtomically(const fs::path& file, const void* data, std::size_t size) {
     AtomicFile atomic(file);
     atomic.write(data, size);

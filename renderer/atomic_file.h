@@ -35,6 +35,9 @@ private:
     int descriptor_ = -1;
 };
 
+/// Whether there is something that is no regular file, which is written directly.
+bool isWrittenDirectly(const std::filesystem::path& file);
+
 /// In one go.
 void writeFileAtomically(const std::filesystem::path& file, const void* data, std::size_t size);
 

@@ -1,6 +1,5 @@
 // [camera] lens = …: a lens of glass, by its exact trace or by a polynomial fitted to it.
 #include <algorithm>
-#include <stdexcept>
 
 #include "lens/axial_beam.h"
 #include "lens/fit_cache.h"
@@ -16,16 +15,6 @@
 namespace etendue {
 
 namespace {
-
-/// Runs `setting`, which may find that the lens cannot follow `key`.
-template <class Setting>
-auto attempt(const ConfigTable& table, const char* key, const Setting& setting) {
-    try {
-        return setting();
-    } catch (const std::invalid_argument& error) {
-        table.fail(key, error.what());
-    }
-}
 
 /// The ray from `film` through the centre of the stop, with the lens focused at infinity: what the
 /// photographer points at.

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 
 #include "renderer/mesh_normals.h"
 #include "renderer/scene_parts.h"
@@ -27,11 +26,8 @@ Mesh latheFrom(const ConfigTable& table) {
     const auto segments = static_cast<int>(table.integer("segments", segmentRange, 64));
     const auto subdivisions = static_cast<int>(table.integer("subdivisions", {1, 256}, 1));
     const auto creaseDegrees = static_cast<float>(table.number("crease_angle", {0, 179}, 40));
-    try {
-        return makeLathe(profile, segments, subdivisions, creaseDegrees);
-    } catch (const std::invalid_argument& error) {
-        table.fail("profile", error.what());
-    }
+    return attempt(table, "profile",
+                   [&] { return makeLathe(profile, segments, subdivisions, creaseDegrees); });
 }
 
 struct Shape {
@@ -66,14 +62,8 @@ Mesh shapeFrom(const ConfigTable& table) {
     std::vector<std::string> names;
     for (const Shape& s : shapes) names.emplace_back(s.name);
     const std::string name = table.choice("shape", names);
-    for (const Shape& s : shapes) {
-        if (name != s.name) continue;
-        try {
-            return s.make(table);
-        } catch (const std::invalid_argument& error) {
-            table.fail("shape", error.what());
-        }
-    }
+    for (const Shape& s : shapes)
+        if (name == s.name) return attempt(table, "shape", [&] { return s.make(table); });
     table.fail("shape", "no such shape");
 }
 

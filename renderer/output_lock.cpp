@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "config/config.h"
+#include "renderer/atomic_file.h"
 
 namespace etendue {
 
@@ -43,8 +44,7 @@ bool isStill(int descriptor, const fs::path& file) {
 }  // namespace
 
 OutputLock::OutputLock(const fs::path& file) {
-    std::error_code error;
-    if (fs::exists(file, error) && !fs::is_regular_file(file, error)) return;
+    if (isWrittenDirectly(file)) return;
     lock_ = file.parent_path() / ("." + file.filename().string() + ".lock");
     while (descriptor_ < 0) {
         const int fd = ::open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, mode_t{0666});

@@ -3,7 +3,9 @@
 
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,6 +28,16 @@ struct LoadingScene {
     const Material* defaultMaterial = nullptr;
     bool isDispersive = false;  // some material is
 };
+
+/// Runs `setting`, which may find that it cannot follow `key`.
+template <class Setting>
+auto attempt(const ConfigTable& table, std::string_view key, const Setting& setting) {
+    try {
+        return setting();
+    } catch (const std::invalid_argument& error) {
+        table.fail(key, error.what());
+    }
+}
 
 /// [camera]. The scene must exist: it may be focused on.
 void loadCamera(const ConfigTable& table, const LoadOptions& options, LoadingScene& loading,

@@ -104,10 +104,7 @@ ExitCode runMerge(const MergeCommand& command) {
     writeMerged(command, merged);
     fmt::print("{}: samples {}, {}\n", command.output.string(), merged.info.ranges.text(),
                exactnessText(merged));
-    if (const std::uint64_t bad = merged.film.badSamples(); bad > 0)
-        say(fmt::format(
-            "etendue: {} samples of the parts were not finite or negative and were left out\n",
-            bad));
+    tellBadSamplesOfParts(merged.film.badSamples());
     if (!command.required) return ExitCode::success;
     const std::vector<SampleRange> holes = merged.info.ranges.holes(*command.required);
     for (const SampleRange& hole : holes) say(fmt::format("hole {}\n", textOf(hole)));

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "config/config.h"
+#include "renderer/atomic_file.h"
 #include "tools/progress.h"
 #include "tools/stop_request.h"
 
@@ -112,9 +113,7 @@ void PartKeeper::remove() const {
 }
 
 fs::path keptPartOf(const fs::path& output) {
-    std::error_code error;
-    const bool isElsewhere = fs::exists(output, error) && !fs::is_regular_file(output, error);
-    return isElsewhere ? fs::path() : partFileFor(output);
+    return isWrittenDirectly(output) ? fs::path() : partFileFor(output);
 }
 
 fs::path lockedFor(const fs::path& output) {
@@ -129,6 +128,13 @@ void refuseToReplacePart(const fs::path& part, const std::string& remedy) {
         fmt::format("{}: holds samples of an unfinished render; {}, --restart throws them away",
                     part.string(), remedy),
         ExitCode::usage);
+}
+
+void tellBadSamplesOfParts(std::uint64_t count) {
+    if (count > 0)
+        say(fmt::format(
+            "etendue: {} samples of the parts were not finite or negative and were left out\n",
+            count));
 }
 
 }  // namespace etendue

@@ -68,4 +68,7 @@ std::filesystem::path lockedFor(const std::filesystem::path& output);
 /// them, "--resume goes on from them".
 void refuseToReplacePart(const std::filesystem::path& part, const std::string& remedy);
 
+/// Says aloud what the parts of a picture have left out, if anything.
+void tellBadSamplesOfParts(std::uint64_t count);
+
 }  // namespace etendue

@@ -98,10 +98,7 @@ Metadata metadataFor(const RenderCommand& command, const LoadedScene& loaded, co
 
 /// What is wrong with the picture, said aloud: nothing is left out in silence.
 void reportDefects(const RenderCommand& command, const Film& film, const RenderResult& result) {
-    if (const std::uint64_t before = film.badSamples() - result.badSampleCount; before > 0)
-        say(fmt::format(
-            "etendue: {} samples of the part were not finite or negative and were left out\n",
-            before));
+    tellBadSamplesOfParts(film.badSamples() - result.badSampleCount);
     if (result.badSampleCount > 0) {
         say(fmt::format(
             "etendue: {} samples were not finite or negative and were left out; the first:\n",

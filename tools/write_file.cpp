@@ -33,10 +33,8 @@ void checkExtension(const std::filesystem::path& file, const std::string& expect
 
 /// One for all paths of a file, whether or not it is there; empty where nothing can be lost.
 std::filesystem::path placeOf(const std::filesystem::path& file) {
+    if (file.empty() || isWrittenDirectly(file)) return {};
     std::error_code error;
-    const bool isElsewhere =
-        std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error);
-    if (file.empty() || isElsewhere) return {};
     const std::filesystem::path absolute = std::filesystem::absolute(file);
     const std::filesystem::path place = std::filesystem::weakly_canonical(absolute, error);
     return error ? absolute : place;

@@ -18,10 +18,14 @@ Eigen::Matrix<double, Rows, 2> block(const PolynomialResult<double>& result, std
     return derivatives;
 }
 
-/// From the values of the exit polynomials and the derivatives of the pupil state by s.
-std::optional<ExitRay> exitRayOf(const PupilSphere& sphere, const PolynomialValues<double>& values,
+/// Of the values of the exit polynomials.
+PupilState<double> pupilOf(const PolynomialValues<double>& values) {
+    return {values[0], values[1], values[2], values[3]};
+}
+
+std::optional<ExitRay> exitRayOf(const PupilSphere& sphere, const PupilState<double>& pupil,
                                  const PupilDerivatives& bySensor, double throughput) {
-    const auto ray = sphere.ray({values[0], values[1], values[2], values[3]}, bySensor);
+    const auto ray = sphere.ray(pupil, bySensor);
     if (!ray) return {};
     return ExitRay{ray->origin, ray->direction, ray->originDerivatives, ray->directionDerivatives,
                    throughput};
@@ -39,10 +43,32 @@ FittedMap::FittedMap(const Prescription& prescription, const LensFit& fit)
 
 std::optional<ExitRay> FittedMap::exitRay(SensorPoint sensor, AperturePoint aperture,
                                           double wavelengthNm) const {
-    std::optional<ExitRay> ray = apertureMap_ ? sensorStateRay(sensor, aperture, wavelengthNm)
-                                              : twoPointRay({sensor.mm, aperture.mm, wavelengthNm});
+    if (apertureMap_) {
+        const std::optional<PupilRay> mapped = sensorStateRay(sensor, aperture, wavelengthNm);
+        return mapped ? exitRay(*mapped) : std::nullopt;
+    }
+    std::optional<ExitRay> ray = twoPointRay({sensor.mm, aperture.mm, wavelengthNm});
     if (ray && !(ray->throughput > 0.0)) ray.reset();
     return ray;
+}
+
+std::optional<PupilRay> FittedMap::pupilRay(SensorPoint sensor, AperturePoint aperture,
+                                            double wavelengthNm) const {
+    if (apertureMap_) return sensorStateRay(sensor, aperture, wavelengthNm);
+    const PolynomialResult<double> at = exit_.evaluate({sensor.mm, aperture.mm, wavelengthNm});
+    PupilRay mapped{pupilOf(at.values), {}, at.values[4]};
+    mapped.bySensorAndAperture << block<4>(at, 0), block<4>(at, 2);
+    return mapped;
+}
+
+std::optional<ExitRay> FittedMap::exitRay(const PupilRay& mapped) const {
+    if (!(mapped.throughput > 0.0)) return {};
+    return exitRayOf(sphere_, mapped.pupil, mapped.bySensorAndAperture.leftCols<2>(),
+                     mapped.throughput);
+}
+
+double FittedMap::etendue(const PupilRay& mapped) const {
+    return etendueDeterminant(mapped.bySensorAndAperture, 1.0, mapped.pupil, sphere_);
 }
 
 std::optional<ExitRay> FittedMap::twoPointRay(const PolynomialInput& input) const {
@@ -50,20 +76,20 @@ std::optional<ExitRay> FittedMap::twoPointRay(const PolynomialInput& input) cons
     PupilDerivatives bySensor;
     for (std::size_t row = 0; row < 4; ++row)
         bySensor.row(static_cast<Eigen::Index>(row)) << at.bySensor[row][0], at.bySensor[row][1];
-    return exitRayOf(sphere_, at.values, bySensor, at.values[4]);
+    return exitRayOf(sphere_, pupilOf(at.values), bySensor, at.values[4]);
 }
 
 std::optional<StateRay> FittedMap::stateRay(SensorPoint sensor, const Eigen::Vector2d& slope,
                                             double wavelengthNm) const {
     const PolynomialInput input{sensor.mm, slope, wavelengthNm};
     const PolynomialResult<double> stop = apertureMap_->evaluate(input), at = exit_.evaluate(input);
-    const auto exit = exitRayOf(sphere_, at.values, block<4>(at, 0), at.values[4]);
+    const auto exit = exitRayOf(sphere_, pupilOf(at.values), block<4>(at, 0), at.values[4]);
     if (!exit) return {};
     return StateRay{{{stop.values[0], stop.values[1]}, block<2>(stop, 2)}, *exit};
 }
 
-std::optional<ExitRay> FittedMap::sensorStateRay(SensorPoint sensor, AperturePoint aperture,
-                                                 double wavelengthNm) const {
+std::optional<PupilRay> FittedMap::sensorStateRay(SensorPoint sensor, AperturePoint aperture,
+                                                  double wavelengthNm) const {
     const auto hit = [&](const Eigen::Vector2d& slope) {
         const auto at = apertureMap_->evaluate({sensor.mm, slope, wavelengthNm});
         return std::optional(StopHit{{at.values[0], at.values[1]}, block<2>(at, 2)});
@@ -77,8 +103,10 @@ std::optional<ExitRay> FittedMap::sensorStateRay(SensorPoint sensor, AperturePoi
     const Eigen::Vector2d& paraxial = paraxialStopMap_.bySlope;
     if (!(bySlope.determinant() * paraxial.x() * paraxial.y() > 0.0)) return {};
     const Eigen::Matrix2d k = slopeBySensor(bySlope, block<2>(stop, 0));
-    return exitRayOf(sphere_, at.values, block<4>(at, 0) + block<4>(at, 2) * k,
-                     exchangeJacobian(*slope, bySlope) * at.values[4]);
+    PupilRay mapped{pupilOf(at.values), {}, exchangeJacobian(*slope, bySlope) * at.values[4]};
+    mapped.bySensorAndAperture << block<4>(at, 0) + block<4>(at, 2) * k,
+        block<4>(at, 2) * bySlope.inverse();
+    return mapped;
 }
 
 }  // namespace etendue

@@ -8,6 +8,13 @@
 
 namespace etendue {
 
+/// A ray where it leaves the lens, with all that the map says of it.
+struct PupilRay {
+    PupilState<double> pupil;
+    Eigen::Matrix4d bySensorAndAperture;  // derivatives of (x, y, directionX, directionY)
+    double throughput;
+};
+
 class FittedMap {
 public:
     /// The fit is of that prescription.
@@ -18,6 +25,14 @@ public:
     std::optional<ExitRay> exitRay(SensorPoint sensor, AperturePoint aperture,
                                    double wavelengthNm) const;
 
+    /// The same on the pupil sphere, where nothing has been made of it yet.
+    std::optional<PupilRay> pupilRay(SensorPoint sensor, AperturePoint aperture,
+                                     double wavelengthNm) const;
+    std::optional<ExitRay> exitRay(const PupilRay& mapped) const;
+    /// Of the rays that leave, per area of the sensor and of the aperture, 1/mm²: an exact lens has
+    /// the J of equation (1).
+    double etendue(const PupilRay& mapped) const;
+
     /// The sensor-state form's own question. Empty where the polynomials give no ray.
     std::optional<StateRay> stateRay(SensorPoint sensor, const Eigen::Vector2d& slope,
                                      double wavelengthNm) const;
@@ -26,8 +41,8 @@ public:
 
 private:
     std::optional<ExitRay> twoPointRay(const PolynomialInput& input) const;
-    std::optional<ExitRay> sensorStateRay(SensorPoint sensor, AperturePoint aperture,
-                                          double wavelengthNm) const;
+    std::optional<PupilRay> sensorStateRay(SensorPoint sensor, AperturePoint aperture,
+                                           double wavelengthNm) const;
 
     PupilSphere sphere_;
     PolynomialEvaluator<double> exit_;

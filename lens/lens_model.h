@@ -37,6 +37,14 @@ struct Sighting {
     ExitRay ray;
 };
 
+/// Where a ray that leaves the lens comes from, at one wavelength.
+struct RayOrigin {
+    SensorPoint sensor;
+    AperturePoint aperture;
+    ExitRay ray;     // at that wavelength
+    double etendue;  // of the rays that leave, per area of the sensor and of the aperture, 1/mm²
+};
+
 class LensModel {
 public:
     virtual ~LensModel() = default;
@@ -44,6 +52,19 @@ public:
     /// Empty when no light passes the lens from `sensor` through `aperture`.
     virtual std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture,
                                          double wavelengthNm) const = 0;
+
+    /// trace() at the first of `wavelengthsNm`; at each other one, where the ray comes from that
+    /// leaves the lens the same way. As many `origins`; all empty when the first is, and others
+    /// where a ray on that way would be blocked. By default the lens parts no colours and loses no
+    /// light.
+    virtual void traceEach(SensorPoint sensor, AperturePoint aperture,
+                           std::span<const double> wavelengthsNm,
+                           std::span<std::optional<RayOrigin>> origins) const {
+        const std::optional<ExitRay> ray = trace(sensor, aperture, wavelengthsNm.front());
+        for (std::optional<RayOrigin>& origin : origins)
+            origin = ray ? std::optional(RayOrigin{sensor, aperture, *ray, ray->throughput})
+                         : std::nullopt;
+    }
 
     /// The sensor point from which the ray through `aperture` meets `targetMm` (lens space). Empty
     /// when there is none.

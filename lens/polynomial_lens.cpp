@@ -1,5 +1,7 @@
 #include "lens/polynomial_lens.h"
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <stdexcept>
 
 #include "lens/target_solver.h"
@@ -39,6 +41,59 @@ std::optional<ExitRay> PolynomialLens::trace(SensorPoint sensor, AperturePoint a
         !passesRims(sensor, aperture, wavelengthNm))
         return {};
     return ray;
+}
+
+void PolynomialLens::traceEach(SensorPoint sensor, AperturePoint aperture,
+                               std::span<const double> wavelengthsNm,
+                               std::span<std::optional<RayOrigin>> origins) const {
+    std::fill(origins.begin(), origins.end(), std::nullopt);
+    if (!domain_.contains(sensor, aperture, wavelengthsNm.front())) return;
+    const auto hero = map_.pupilRay(sensor, aperture, wavelengthsNm.front());
+    if (!hero) return;
+    origins[0] = originOf(*hero, sensor, aperture, wavelengthsNm.front());
+    if (!origins[0]) return;
+    for (std::size_t i = 1; i < wavelengthsNm.size(); ++i)
+        origins[i] = originNear(*origins[0], hero->pupil, wavelengthsNm[i]);
+}
+
+std::optional<RayOrigin> PolynomialLens::originOf(const PupilRay& mapped, SensorPoint sensor,
+                                                  AperturePoint aperture,
+                                                  double wavelengthNm) const {
+    if (!aperture_.contains(aperture.mm)) return {};
+    const std::optional<ExitRay> ray = map_.exitRay(mapped);
+    if (!ray || statusOf(sensor, *ray, aperture, wavelengthNm) != ConnectStatus::found ||
+        !passesRims(sensor, aperture, wavelengthNm))
+        return {};
+    return RayOrigin{sensor, aperture, *ray, map_.etendue(mapped)};
+}
+
+std::optional<RayOrigin> PolynomialLens::originNear(const RayOrigin& near,
+                                                    const PupilState<double>& leaving,
+                                                    double wavelengthNm) const {
+    const double toleranceMm = sightToleranceRadians * focalLengthMm_;
+    Eigen::Vector4d at;
+    at << near.sensor.mm, near.aperture.mm;
+    constexpr int mostSteps = 8;
+    for (int i = 0; i < mostSteps; ++i) {
+        const SensorPoint sensor{at.head<2>()};
+        const AperturePoint aperture{at.tail<2>()};
+        // Far beyond the domain powers overflow.
+        constexpr double margin = 1.2;
+        if (!(sensor.mm.cwiseAbs().array() <= margin * domain_.sensorHalfSizeMm.array()).all() ||
+            !(aperture.mm.norm() <= margin * domain_.apertureRadiusMm))
+            return {};
+        const auto mapped = map_.pupilRay(sensor, aperture, wavelengthNm);
+        if (!mapped) return {};
+        const PupilState<double>& there = mapped->pupil;
+        const Eigen::Vector4d miss(leaving.x - there.x, leaving.y - there.y,
+                                   leaving.directionX - there.directionX,
+                                   leaving.directionY - there.directionY);
+        // One more step squares what is missing.
+        at += mapped->bySensorAndAperture.inverse() * miss;
+        if (miss.head<2>().norm() <= toleranceMm && miss.tail<2>().norm() <= sightToleranceRadians)
+            return originOf(*mapped, {at.head<2>()}, {at.tail<2>()}, wavelengthNm);
+    }
+    return {};
 }
 
 ConnectStatus PolynomialLens::statusOf(SensorPoint sensor, const ExitRay& ray,

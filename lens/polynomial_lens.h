@@ -23,6 +23,12 @@ public:
     /// TracedLens::trace.
     std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture,
                                  double wavelengthNm) const override;
+    /// Newton's method on where the ray leaves and how, in sensor and aperture point at once, to
+    /// sightToleranceRadians, of the direction and of the focal length. Étendue is that of the
+    /// fitted map itself, which keeps it within the fit's errors.
+    void traceEach(SensorPoint sensor, AperturePoint aperture,
+                   std::span<const double> wavelengthsNm,
+                   std::span<std::optional<RayOrigin>> origins) const override;
     /// By ConnectMethod::newton, from the fit's own first guess (sensor_fits.h).
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                        double wavelengthNm) const override;
@@ -64,6 +70,12 @@ private:
     /// Rims apart.
     ConnectStatus statusOf(SensorPoint sensor, const ExitRay& ray, AperturePoint aperture,
                            double wavelengthNm) const;
+    /// What trace() makes of it, unless rims or aperture block it.
+    std::optional<RayOrigin> originOf(const PupilRay& mapped, SensorPoint sensor,
+                                      AperturePoint aperture, double wavelengthNm) const;
+    /// The origin of the ray that leaves as `leaving`, sought from `near` on.
+    std::optional<RayOrigin> originNear(const RayOrigin& near, const PupilState<double>& leaving,
+                                        double wavelengthNm) const;
     bool canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm) const;
     /// The end of our search from a guess, and how it went; the connection's own sensor point is
     /// not set.

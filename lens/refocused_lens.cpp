@@ -1,6 +1,7 @@
 #include "lens/refocused_lens.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <stdexcept>
 
 namespace etendue {
@@ -24,10 +25,10 @@ RefocusedLens::Moved RefocusedLens::moved(const Eigen::Vector2d& reference, Aper
             Eigen::Matrix2d::Identity() - shiftMm_ * bySensor};
 }
 
-std::optional<ExitRay> RefocusedLens::trace(SensorPoint sensor, AperturePoint aperture,
-                                            double wavelengthNm) const {
-    // Newton's method for the point on the fit's own sensor. The slope is all but linear in it:
-    // two or three steps.
+std::optional<Eigen::Vector2d> RefocusedLens::referenceOf(SensorPoint sensor,
+                                                          AperturePoint aperture,
+                                                          double wavelengthNm) const {
+    // Newton's method. The slope is all but linear in the point: two or three steps.
     Eigen::Vector2d reference = sensor.mm;
     Moved at = moved(reference, aperture, wavelengthNm);
     constexpr int mostSteps = 10;
@@ -37,15 +38,46 @@ std::optional<ExitRay> RefocusedLens::trace(SensorPoint sensor, AperturePoint ap
         reference -= at.byReference.inverse() * (at.mm - sensor.mm);
         at = moved(reference, aperture, wavelengthNm);
     }
-    std::optional<ExitRay> ray = lens_.trace({reference}, aperture, wavelengthNm);
-    if (!ray) return {};
+    return reference;
+}
+
+std::optional<ExitRay> RefocusedLens::byMovedSensor(ExitRay ray, const Moved& at) {
     const Eigen::Matrix2d referenceBySensor = at.byReference.inverse();
     const double determinant = referenceBySensor.determinant();
     if (!(determinant > 0.0)) return {};
-    ray->originBySensor *= referenceBySensor;
-    ray->directionBySensor *= referenceBySensor;
-    ray->throughput *= determinant;
+    ray.originBySensor *= referenceBySensor;
+    ray.directionBySensor *= referenceBySensor;
+    ray.throughput *= determinant;
     return ray;
+}
+
+std::optional<ExitRay> RefocusedLens::trace(SensorPoint sensor, AperturePoint aperture,
+                                            double wavelengthNm) const {
+    const auto reference = referenceOf(sensor, aperture, wavelengthNm);
+    if (!reference) return {};
+    const std::optional<ExitRay> ray = lens_.trace({*reference}, aperture, wavelengthNm);
+    if (!ray) return {};
+    return byMovedSensor(*ray, moved(*reference, aperture, wavelengthNm));
+}
+
+void RefocusedLens::traceEach(SensorPoint sensor, AperturePoint aperture,
+                              std::span<const double> wavelengthsNm,
+                              std::span<std::optional<RayOrigin>> origins) const {
+    std::fill(origins.begin(), origins.end(), std::nullopt);
+    const auto reference = referenceOf(sensor, aperture, wavelengthsNm.front());
+    if (!reference) return;
+    lens_.traceEach({*reference}, aperture, wavelengthsNm, origins);
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+        if (!origins[i]) continue;
+        RayOrigin& origin = *origins[i];
+        const Moved at = moved(origin.sensor.mm, origin.aperture, wavelengthsNm[i]);
+        const auto ray = byMovedSensor(origin.ray, at);
+        if (ray)
+            origin = {
+                {at.mm}, origin.aperture, *ray, origin.etendue / at.byReference.determinant()};
+        else
+            origins[i].reset();
+    }
 }
 
 std::optional<SensorPoint> RefocusedLens::connect(const Eigen::Vector3d& targetMm,

@@ -18,6 +18,9 @@ public:
 
     std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture,
                                  double wavelengthNm) const override;
+    void traceEach(SensorPoint sensor, AperturePoint aperture,
+                   std::span<const double> wavelengthsNm,
+                   std::span<std::optional<RayOrigin>> origins) const override;
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                        double wavelengthNm) const override;
     AperturePoint sampleAperture(Eigen::Vector2d u) const override {
@@ -34,6 +37,12 @@ private:
     };
     Moved moved(const Eigen::Vector2d& reference, AperturePoint aperture,
                 double wavelengthNm) const;
+    /// The point on the fit's own sensor from which the ray to `sensor` comes.
+    std::optional<Eigen::Vector2d> referenceOf(SensorPoint sensor, AperturePoint aperture,
+                                               double wavelengthNm) const;
+    /// From the derivatives by the fit's own sensor to those by the moved one. Empty where rays
+    /// have crossed.
+    static std::optional<ExitRay> byMovedSensor(ExitRay ray, const Moved& at);
 
     PolynomialLens lens_;
     std::optional<PolynomialEvaluator<double>> slope_;

@@ -1,6 +1,7 @@
 #include "lens/traced_lens.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -49,6 +50,17 @@ std::optional<ExitRay> TracedLens::trace(SensorPoint sensor, AperturePoint apert
     return MonochromaticLens(*this, wavelengthNm).trace(sensor, aperture);
 }
 
+void TracedLens::traceEach(SensorPoint sensor, AperturePoint aperture,
+                           std::span<const double> wavelengthsNm,
+                           std::span<std::optional<RayOrigin>> origins) const {
+    std::fill(origins.begin(), origins.end(), std::nullopt);
+    const std::optional<ExitRay> hero = trace(sensor, aperture, wavelengthsNm.front());
+    if (!hero) return;
+    for (std::size_t i = 0; i < wavelengthsNm.size(); ++i)
+        if (isInRange(wavelengthsNm[i]))
+            origins[i] = MonochromaticLens(*this, wavelengthsNm[i]).originOf(*hero);
+}
+
 std::optional<SensorPoint> TracedLens::connect(const Eigen::Vector3d& targetMm,
                                                AperturePoint aperture, double wavelengthNm) const {
     return solve(targetMm, aperture, wavelengthNm).sensor;
@@ -93,6 +105,18 @@ TracedRay MonochromaticLens::traceToSensor(const LensRay<double>& ray) const {
     const PlaneState<double> end = planeState(result.ray, lens_->sensorZMm());
     result.ray.origin = {end.x, end.y, lens_->sensorZMm()};
     return result;
+}
+
+std::optional<RayOrigin> MonochromaticLens::originOf(const ExitRay& leaving) const {
+    const TracedRay arriving =
+        traceToSensor({fromEigen(leaving.origin), fromEigen(leaving.direction) * -1.0});
+    if (arriving.passage.status != TraceStatus::passed) return {};
+    const SensorPoint sensor{{arriving.ray.origin.x, arriving.ray.origin.y}};
+    const AperturePoint aperture{{arriving.aperture.x, arriving.aperture.y}};
+    const std::optional<ExitRay> ray = trace(sensor, aperture);
+    if (!ray) return {};
+    // A lens conserves étendue: J of equation (1).
+    return RayOrigin{sensor, aperture, *ray, ray->throughput / arriving.passage.transmittance};
 }
 
 std::unique_ptr<TracedLens> makeTracedLens(const Prescription& prescription,

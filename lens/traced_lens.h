@@ -51,6 +51,9 @@ public:
     /// connect() could not give both; without folds there is one.
     std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture,
                                  double wavelengthNm) const override;
+    void traceEach(SensorPoint sensor, AperturePoint aperture,
+                   std::span<const double> wavelengthsNm,
+                   std::span<std::optional<RayOrigin>> origins) const override;
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                        double wavelengthNm) const override;
     /// The derivatives are those of a ray that leaves within the search's tolerance of it.
@@ -100,6 +103,8 @@ public:
 
     /// As TracedLens'.
     std::optional<ExitRay> trace(SensorPoint sensor, AperturePoint aperture) const;
+    /// Of the ray that leaves as `leaving` does; empty when it is blocked, or folded.
+    std::optional<RayOrigin> originOf(const ExitRay& leaving) const;
     std::optional<SensorPoint> connect(const Eigen::Vector3d& targetMm,
                                        AperturePoint aperture) const {
         return solve(targetMm, aperture).sensor;

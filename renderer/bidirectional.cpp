@@ -22,10 +22,10 @@ public:
         static thread_local BidirectionalMemory memory;
         BidirectionalSample sample{view, color, settings_, techniques_, memory, result};
         takeLightPaths(sample, id, lightPathsPerSample(), [](int) {});
-        if (!request.ownPixel) return;
+        if (!request.ownPixel && !(needsCamera_ && isParted(view))) return;
         if (!needsCamera_ && !request.firstHit) return;
         CameraSample camera = drawCameraSample(view, id);
-        if (!camera.ray) return;
+        if (!camera.ray || !(request.ownPixel || isSplatting(view, camera))) return;
         if (request.firstHit) result.firstHit = firstHitOf(view.scene, *camera.ray);
         if (!needsCamera_) return;
         takeCameraPath(sample, camera);

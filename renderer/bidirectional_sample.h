@@ -50,8 +50,8 @@ struct JoinDensities {
 
 /// The weight of the path made of these vertices of a camera's walk and those of a light's, each
 /// from its beginning.
-float weightOf(BidirectionalSample& sample, std::span<const PathVertex> camera,
-               std::span<const PathVertex> light, const JoinDensities& join);
+PathWeight weightOf(BidirectionalSample& sample, std::span<const PathVertex> camera,
+                    std::span<const PathVertex> light, const JoinDensities& join);
 
 /// Whether connecting what the camera's walk met first to the lens finds the film point where it
 /// began. If not, no technique with t = 1 makes its paths.

@@ -105,6 +105,28 @@ std::optional<CameraRay> Camera::sampleRay(Vec2 film, Vec2 apertureUniform,
     return worldRay(*exit);
 }
 
+CameraRayOrigins Camera::sampleRayOfEach(Vec2 film, Vec2 apertureUniform,
+                                         const Wavelengths& wavelengths) const {
+    const SensorPoint sensor{sensorPointMm(settings_, film)};
+    const AperturePoint aperture = lens_->sampleAperture(toEigen(apertureUniform));
+    std::array<std::optional<RayOrigin>, Spectrum::lanes> origins;
+    lens_->traceEach(sensor, aperture, wavelengthsNm(wavelengths), origins);
+    CameraRayOrigins result;
+    if (!origins[0]) return result;
+    const CameraRay hero = worldRay(origins[0]->ray);
+    result[0] = {film, hero, origins[0]->etendue};
+    for (std::size_t lane = 1; lane < origins.size(); ++lane) {
+        if (!origins[lane]) continue;
+        CameraRayOrigin origin{filmPoint(origins[lane]->sensor.mm), worldRay(origins[lane]->ray),
+                               origins[lane]->etendue};
+        // But for the search's tolerance it is the same ray.
+        origin.ray.origin = hero.origin;
+        origin.ray.direction = hero.direction;
+        if (std::isfinite(origin.film.x) && std::isfinite(origin.film.y)) result[lane] = origin;
+    }
+    return result;
+}
+
 std::optional<CameraConnection> Camera::connect(Vec3 scenePoint, Vec2 apertureUniform,
                                                 const Wavelengths& wavelengths) const {
     std::optional<CameraConnection> connection;
@@ -147,9 +169,7 @@ Camera::Target Camera::targetToward(Vec3 direction) const {
 
 void Camera::connectTo(const Target& target, Vec2 apertureUniform, const Wavelengths& wavelengths,
                        std::span<std::optional<CameraConnection>> connections) const {
-    std::array<double, Spectrum::lanes> nm;
-    for (std::size_t lane = 0; lane < connections.size(); ++lane)
-        nm[lane] = wavelengthNm(wavelengths, lane);
+    const std::array<double, Spectrum::lanes> nm = wavelengthsNm(wavelengths);
     if (settings_.outerPupil) {
         for (std::size_t lane = 0; lane < connections.size(); ++lane)
             connections[lane] = connectAtOuterPupil(target, apertureUniform, nm[lane]);
@@ -213,6 +233,12 @@ std::optional<CameraConnection> Camera::connectAtOuterPupil(const Target& target
 
 double Camera::wavelengthNm(const Wavelengths& wavelengths, std::size_t lane) const {
     return settings_.isDispersive ? wavelengths.nm[lane] : Wavelengths::rgbWavelengthNm;
+}
+
+std::array<double, Spectrum::lanes> Camera::wavelengthsNm(const Wavelengths& wavelengths) const {
+    std::array<double, Spectrum::lanes> nm;
+    for (std::size_t lane = 0; lane < nm.size(); ++lane) nm[lane] = wavelengthNm(wavelengths, lane);
+    return nm;
 }
 
 CameraRay Camera::worldRay(const ExitRay& exit) const {

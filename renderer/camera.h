@@ -28,6 +28,16 @@ struct CameraRay {
     std::array<Vec3, 2> directionByPixel;  // 1 per pixel
 };
 
+/// Where a camera ray comes from, at one wavelength.
+struct CameraRayOrigin {
+    Vec2 film;       // pixels, from the top left of the full frame; may lie outside it
+    CameraRay ray;   // with weight and footprint of that wavelength
+    double etendue;  // of the rays that leave, per area of sensor and aperture, 1/mm²
+};
+
+/// At the wavelength of each lane, of one ray.
+using CameraRayOrigins = std::array<std::optional<CameraRayOrigin>, Spectrum::lanes>;
+
 /// A scene point seen through one aperture point.
 struct CameraConnection {
     Vec2 film;       // pixels, from the top left of the full frame; may lie outside it
@@ -67,6 +77,11 @@ public:
     /// the others elsewhere. Empty when the lens blocks it.
     std::optional<CameraRay> sampleRay(Vec2 film, Vec2 apertureUniform,
                                        const Wavelengths& wavelengths) const;
+
+    /// The same ray, the first lane's, and where it comes from at every other wavelength. All empty
+    /// when the lens blocks it.
+    CameraRayOrigins sampleRayOfEach(Vec2 film, Vec2 apertureUniform,
+                                     const Wavelengths& wavelengths) const;
 
     /// The film point from which the ray through that same aperture point meets `scenePoint`, at
     /// the hero wavelength. Empty when there is none, and on an image of the aperture point, where
@@ -109,6 +124,7 @@ private:
     std::optional<CameraConnection> connectAtOuterPupil(const Target& target, Vec2 uniform,
                                                         double nm) const;
     double wavelengthNm(const Wavelengths& wavelengths, std::size_t lane) const;
+    std::array<double, Spectrum::lanes> wavelengthsNm(const Wavelengths& wavelengths) const;
     Vec2 filmPoint(const Eigen::Vector2d& sensorMm) const;
     CameraRay worldRay(const ExitRay& exit) const;
 

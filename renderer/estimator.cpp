@@ -1,5 +1,7 @@
 #include "renderer/estimator.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace etendue {
@@ -31,6 +33,45 @@ RandomStream pixelRandom(const View& view, SampleId id, RandomDomain domain) {
     return id.sampler == Sampler::sobol ? RandomStream(random, pixel, id.sample) : random;
 }
 
+/// The density of film points, per pixel area, that one camera sample of every pixel draws: one,
+/// but near the frame's edge and for filters that do not sum to one everywhere.
+double samplesAt(const View& view, Vec2 film) {
+    const CameraSettings& frame = view.camera.settings();
+    const auto along = [&](float at, int pixels) {
+        const float radius = view.filter.radius();
+        const auto first = static_cast<int>(std::floor(std::max(at - radius - 0.5f, 0.0f)));
+        double sum = 0.0;
+        for (int i = first; i < pixels && static_cast<float>(i) <= at + radius; ++i)
+            sum += view.filter.pdfAxis(at - (static_cast<float>(i) + 0.5f));
+        return sum;
+    };
+    return along(film.x, frame.width) * along(film.y, frame.height);
+}
+
+/// The throughput of each lane. The ray of one wavelength might as well have been drawn for each
+/// of the others, from where it comes at that one: the densities of that, per étendue, are summed
+/// by the balance heuristic ("Hero Wavelength Spectral Sampling", Wilkie et al. 2014, where the
+/// lens' map is the path's first vertex). A lane's own samples are drawn pixel by pixel, by the
+/// very filter that weighs them: of those the density is one.
+void shareAmongLanes(const View& view, CameraSample& sample) {
+    const CameraRayOrigins& origins = *sample.origins;
+    std::array<double, Spectrum::lanes> density{}, own{};
+    double sum = 0.0;
+    for (std::size_t lane = 0; lane < origins.size(); ++lane) {
+        if (!origins[lane]) continue;
+        own[lane] = 1.0 / origins[lane]->etendue;
+        density[lane] = samplesAt(view, origins[lane]->film) * own[lane];
+        sum += density[lane];
+    }
+    sample.throughput = Spectrum::fromLanes([&](int i) {
+        const auto lane = static_cast<std::size_t>(i);
+        if (!origins[lane]) return 0.0f;
+        const double share = own[lane] / (sum - density[lane] + own[lane]);
+        return static_cast<float>(Spectrum::lanes * share * origins[lane]->ray.weight);
+    });
+    sample.heroStandsFor = static_cast<float>((sum - density[0] + own[0]) / own[0]);
+}
+
 }  // namespace
 
 RandomStream cameraPathRandom(const View& view, SampleId id) {
@@ -59,23 +100,66 @@ SpectralSample drawWavelengths(const View& view, SampleId id) {
     return sampleWavelengths(pixelRandom(view, id, RandomDomain::wavelength).next());
 }
 
+bool isOnFilm(const View& view, Vec2 film) {
+    const CameraSettings& frame = view.camera.settings();
+    const FrameWindow window = view.window.value_or(
+        FrameWindow{frame.width, frame.height, 0, 0, frame.width, frame.height});
+    const float margin = view.filter.radius() - 0.5f;
+    const auto isWithin = [&](float at, int begin, int size) {
+        return at >= static_cast<float>(begin) - margin &&
+               at < static_cast<float>(begin + size) + margin;
+    };
+    return isWithin(film.x, window.x, window.width) && isWithin(film.y, window.y, window.height);
+}
+
+bool isSplatting(const View& view, const CameraSample& sample) {
+    if (!sample.origins) return false;
+    for (std::size_t lane = 1; lane < sample.origins->size(); ++lane)
+        if (const auto& origin = (*sample.origins)[lane]; origin && isOnFilm(view, origin->film))
+            return true;
+    return false;
+}
+
 CameraSample drawCameraSample(const View& view, SampleId id) {
     CameraSample result{.random = cameraPathRandom(view, id),
                         .color = drawWavelengths(view, id),
                         .film = {},
                         .apertureUniform = {},
                         .ray = {},
-                        .throughput = {},
-                        .isHeroOnly = isParted(view)};
+                        .origins = {},
+                        .throughput = {}};
     const Vec2 center{static_cast<float>(id.x) + 0.5f, static_cast<float>(id.y) + 0.5f};
     result.film = center + view.filter.sample(result.random.next2());
     result.apertureUniform = result.random.next2();
-    result.ray =
-        view.camera.sampleRay(result.film, result.apertureUniform, result.color.wavelengths);
-    if (!result.ray) return result;
-    const float weight = result.ray->weight;
-    result.throughput = isParted(view) ? heroAlone(Spectrum(weight)) : Spectrum(weight);
+    const Wavelengths& wavelengths = result.color.wavelengths;
+    if (isParted(view)) {
+        result.origins =
+            view.camera.sampleRayOfEach(result.film, result.apertureUniform, wavelengths);
+        if (const auto& hero = result.origins->front()) {
+            result.ray = hero->ray;
+            shareAmongLanes(view, result);
+        }
+    } else {
+        result.ray = view.camera.sampleRay(result.film, result.apertureUniform, wavelengths);
+        if (result.ray) result.throughput = Spectrum(result.ray->weight);
+    }
     return result;
+}
+
+void contribute(const CameraSample& sample, Technique technique, const Spectrum& value,
+                const LaneWeights& weights, std::vector<Contribution>& contributions) {
+    if (!sample.origins) {
+        contributions.push_back({technique, sample.color.onFilm(value), weights[0], sample.film});
+        return;
+    }
+    for (std::size_t lane = 0; lane < Spectrum::lanes; ++lane) {
+        const auto& origin = (*sample.origins)[lane];
+        const Spectrum landing = laneAlone(value, lane);
+        const bool isSplat = lane > 0;
+        if (!origin || (isSplat && isBlack(landing))) continue;
+        contributions.push_back(
+            {technique, sample.color.onFilm(landing), weights[lane], origin->film, isSplat});
+    }
 }
 
 std::optional<FirstHit> firstHitOf(const Scene& scene, const CameraRay& ray) {

@@ -1,6 +1,7 @@
 // Estimator: an unbiased estimate of the measurement of equation (1), one sample at a time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "renderer/camera.h"
 #include "renderer/filter.h"
+#include "renderer/image_io.h"
 #include "renderer/mis.h"
 #include "renderer/random.h"
 #include "renderer/scene.h"
@@ -40,6 +42,7 @@ struct View {
     const Camera& camera;
     const Filter& filter;
     bool isSpectral = false;
+    std::optional<FrameWindow> window = {};  // of the frame, all that is wanted; else all of it
 };
 
 /// Names a sample, whose numbers can be had again from it. Light paths belong to the sample of a
@@ -64,6 +67,8 @@ struct Contribution {
     Spectrum value;       // what the film adds (SpectralSample::onFilm), not weighted yet
     float weight = 1.0f;  // of multiple importance sampling
     Vec2 film;            // of a splat: pixels of the full frame
+    /// A light path may fall anywhere (t = 1), and so may wavelengths of a camera path, behind a
+    /// lens that parts them. The first is a sample of the whole frame, the second of one pixel.
     bool isSplat = false;
 };
 
@@ -86,11 +91,10 @@ public:
     virtual void takeSample(const View& view, SampleId id, SampleRequest request,
                             Sample& result) const = 0;
 
-    /// Light paths that each sample traces; a pixel's value is the mean of its own contributions
-    /// over the samples, plus the mean of what is splatted on it over all light paths. 0: none, and
-    /// nothing is splatted.
+    /// Light paths that each sample traces; a pixel's value is the mean of what camera paths bring
+    /// to it over the samples, plus the mean of what light paths do over all of those.
     virtual int lightPathsPerSample() const { return 0; }
-    /// Whether anything else than splats is contributed.
+    /// Whether camera paths bring anything.
     virtual bool hasCameraLight() const { return true; }
 };
 
@@ -101,16 +105,31 @@ struct CameraSample {
     SpectralSample color;
     Vec2 film, apertureUniform;
     std::optional<CameraRay> ray;
-    /// The ray's weight, in the lanes that travel along it: behind a dispersive lens the hero's
-    /// alone, which stands for all four.
+    /// Behind a lens that parts colours, where the ray comes from at each wavelength: a lane's
+    /// light lands on its own film point. Else empty, and all land on `film`.
+    std::optional<CameraRayOrigins> origins;
+    /// The ray's weight in every lane. Parted, each is shared with the samples of the other lanes'
+    /// heroes that find the same ray, by the balance heuristic.
     Spectrum throughput;
-    bool isHeroOnly = false;
+    /// What the first lane is worth as soon as it goes on alone, which no other's hero could.
+    float heroStandsFor = Spectrum::lanes;
 };
 CameraSample drawCameraSample(const View& view, SampleId id);
 /// The wavelengths of a sample, of its camera path and its light paths alike.
 SpectralSample drawWavelengths(const View& view, SampleId id);
 /// Whether each wavelength goes through the lens on a way of its own.
 bool isParted(const View& view);
+/// Whether the filter of any pixel reaches `film`, of the view's window if it has one.
+bool isOnFilm(const View& view, Vec2 film);
+/// Whether any wavelength may splat there.
+bool isSplatting(const View& view, const CameraSample& sample);
+
+/// Weights of multiple importance sampling, of each lane.
+using LaneWeights = std::array<float, Spectrum::lanes>;
+/// What a camera path brings, `value` in lanes: to the pixel, and splats of lanes that land
+/// elsewhere.
+void contribute(const CameraSample& sample, Technique technique, const Spectrum& value,
+                const LaneWeights& weights, std::vector<Contribution>& contributions);
 
 /// What `ray` meets first.
 std::optional<FirstHit> firstHitOf(const Scene& scene, const CameraRay& ray);

@@ -91,8 +91,8 @@ public:
     /// What that sample met; not called for one that met nothing. As for add(), a value that is not
     /// finite is counted and left out.
     bool addFeatures(int x, int y, const FilmFeatures& features);
-    /// From now on light is splatted, by so many light paths of the whole frame in each sample. To
-    /// be called before addSplat(); as many bytes again.
+    /// From now on light is splatted, by so many light paths of the whole frame in each sample, or
+    /// camera paths where there are no others. To be called before addSplat(); as many bytes again.
     void expectSplats(std::uint64_t lightPathsPerSample);
     /// Adds light that a light path brought to pixel (x, y) of the window: the film holds the mean
     /// over all light paths. The value must be finite and not negative (isUsable).
@@ -111,6 +111,9 @@ public:
         if (!state_.sampleLuminance.empty())
             prefetch(state_.sampleLuminance.data() + begin, state_.sampleLuminance.data() + end);
     }
+    /// Those of expectSplats: what a camera path splats is to be multiplied by, of which there is
+    /// one to a pixel.
+    float lightPathsPerSample() const { return static_cast<float>(1.0 / samplesPerLightPath_); }
     void addLightPaths(std::uint64_t count) { state_.lightPaths += count; }
     bool countBad();
     /// Every pixel of the window has had `count` more samples: the means' divisor.

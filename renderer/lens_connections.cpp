@@ -32,7 +32,7 @@ public:
                         ? camera.connectEachToInfinity(y.wo, apertureUniform, wavelengths_)
                         : camera.connectEach(y.point.position, apertureUniform, wavelengths_);
                 for (std::size_t lane = 0; lane < each.size(); ++lane)
-                    if (each[lane]) add(s, static_cast<int>(lane), *each[lane]);
+                    if (each[lane]) add(s, lane, *each[lane]);
             } else {
                 const auto hero =
                     isInfinite ? camera.connectToInfinity(y.wo, apertureUniform, wavelengths_)
@@ -53,8 +53,8 @@ private:
     /// Whether every wavelength lands in a place of its own: behind a dispersive lens.
     bool partsColors(const PathVertex& y) const { return isParted(view_) && !y.isHeroOnly; }
 
-    void add(std::size_t s, int lane, const CameraConnection& connection) {
-        if (!isOnFilm(connection.film)) return;
+    void add(std::size_t s, std::size_t lane, const CameraConnection& connection) {
+        if (!isOnFilm(view_, connection.film)) return;
         if (light_.vertices[s - 1].kind == PathVertex::Kind::infinite)
             addInfinity(lane, connection);
         else if (s == 1)
@@ -64,7 +64,7 @@ private:
     }
 
     /// s ≥ 2, t = 1.
-    void addVertex(std::size_t s, int lane, const CameraConnection& connection) {
+    void addVertex(std::size_t s, std::size_t lane, const CameraConnection& connection) {
         const PathVertex& y = light_.vertices[s - 1];
         const Vec3 toLens = -connection.ray.direction;
         const Scattering scattering =
@@ -77,11 +77,11 @@ private:
         const Spectrum value = y.throughput * scattering.value *
                                importance(connection.ray, connection.distance, toLens);
         splat(s, lane, connection.film, value,
-              weightOf(sample_, lens(), sample_.lightVertices(s), join));
+              weightOf(sample_, lens(), sample_.lightVertices(s), join).weight);
     }
 
     /// s = 1, t = 1: the light itself through the lens.
-    void addEmission(int lane, const CameraConnection& connection) {
+    void addEmission(std::size_t lane, const CameraConnection& connection) {
         const PathVertex& y = light_.vertices[0];
         const CameraRay& ray = connection.ray;
         const Light& light = view_.scene.lights()[light_.light];
@@ -96,10 +96,10 @@ private:
         const Spectrum value =
             emitted * (importance(ray, connection.distance, normal) / y.density.fromLight);
         splat(1, lane, connection.film, value,
-              weightOf(sample_, lens(), sample_.lightVertices(1), join));
+              weightOf(sample_, lens(), sample_.lightVertices(1), join).weight);
     }
 
-    void addInfinity(int lane, const CameraConnection& connection) {
+    void addInfinity(std::size_t lane, const CameraConnection& connection) {
         const PathVertex& y = light_.vertices[0];
         const CameraRay& ray = connection.ray;
         if (!view_.scene.isVisibleToInfinity(ray.origin, ray.direction)) return;
@@ -108,7 +108,7 @@ private:
         const Spectrum value =
             light_.radiance * (ray.weight * pdfSolidAngle(ray) / y.density.fromLight);
         splat(1, lane, connection.film, value,
-              weightOf(sample_, lens(), sample_.lightVertices(1), join));
+              weightOf(sample_, lens(), sample_.lightVertices(1), join).weight);
     }
 
     /// W/sr, from the irradiance of a light that is a point.
@@ -121,19 +121,9 @@ private:
         return isVisible(view_.scene, point, bareSurfacePoint(ray.origin, {}, ray.direction));
     }
 
-    /// Whether the filter of any pixel reaches `film`.
-    bool isOnFilm(Vec2 film) const {
-        const float margin = view_.filter.radius() - 0.5f;
-        const CameraSettings& frame = view_.camera.settings();
-        return film.x >= -margin && film.x < static_cast<float>(frame.width) + margin &&
-               film.y >= -margin && film.y < static_cast<float>(frame.height) + margin;
-    }
-
-    void splat(std::size_t s, int lane, Vec2 film, const Spectrum& value, float weight) {
+    void splat(std::size_t s, std::size_t lane, Vec2 film, const Spectrum& value, float weight) {
         const Spectrum landing =
-            partsColors(light_.vertices[s - 1])
-                ? Spectrum::fromLanes([&](int i) { return i == lane ? value[i] : 0.0f; })
-                : value;
+            partsColors(light_.vertices[s - 1]) ? laneAlone(value, lane) : value;
         sample_.result.contributions.push_back({.technique = {static_cast<int>(s), 1},
                                                 .value = sample_.color.onFilm(landing),
                                                 .weight = weight,

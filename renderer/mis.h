@@ -99,10 +99,15 @@ struct SampleCounts {
     }
 };
 
+struct PathWeight {
+    float weight;
+    float byLens;  // what the techniques with t = 1 have of the sum of all densities
+};
+
 /// The balance heuristic (Veach 1997, §10.2) for a path sampled by `technique`. `path`[0] is the
 /// aperture point, the last vertex lies on the light; path.size() = s + t. The weights of all
 /// techniques that can make the path sum to one.
-float balanceWeight(std::span<const VertexDensity> path, Technique technique,
-                    const SampleCounts& counts);
+PathWeight balanceWeight(std::span<const VertexDensity> path, Technique technique,
+                         const SampleCounts& counts);
 
 }  // namespace etendue

@@ -18,8 +18,9 @@ public:
              RandomStream& random)
         : scene_(scene), wavelengths_(wavelengths), settings_(settings), random_(random) {}
 
-    /// `throughput`: of the ray; `isHeroOnly`: in its first lane alone, which stands for all four.
-    Spectrum radiance(Ray ray, Spectrum throughput, bool isHeroOnly) {
+    /// `throughput`: of the ray; `heroStandsFor`: as CameraSample's.
+    Spectrum radiance(Ray ray, Spectrum throughput, float heroStandsFor) {
+        bool isHeroOnly = false;
         Spectrum result, attenuation(1.0f);
         // The density with which the last scattering drew the ray; none after the camera or a Dirac
         // lobe, where no light sample competes.
@@ -45,7 +46,7 @@ public:
             throughput *= next->weight;
             attenuation *= next->weight;
             if (next->isHeroOnly && !isHeroOnly) {
-                throughput = heroAlone(throughput);
+                throughput = heroAlone(throughput, heroStandsFor);
                 isHeroOnly = true;
             }
             if (!survivesRoulette(throughput, attenuation, depth)) return result;
@@ -124,16 +125,15 @@ public:
                     Sample& result) const override {
         result.contributions.clear();
         result.firstHit.reset();
-        if (!request.ownPixel) return;
+        if (!request.ownPixel && !isParted(view)) return;
         CameraSample camera = drawCameraSample(view, id);
-        if (!camera.ray) return;
+        if (!camera.ray || !(request.ownPixel || isSplatting(view, camera))) return;
         if (request.firstHit) result.firstHit = firstHitOf(view.scene, *camera.ray);
         const Spectrum value =
             PathWalk(view.scene, camera.color.wavelengths, settings_, camera.random)
                 .radiance({camera.ray->origin, camera.ray->direction}, camera.throughput,
-                          isParted(view));
-        result.contributions.push_back(
-            {.technique = {}, .value = camera.color.onFilm(value), .film = camera.film});
+                          camera.heroStandsFor);
+        contribute(camera, {}, value, {1.0f, 1.0f, 1.0f, 1.0f}, result.contributions);
     }
 
 private:
@@ -144,7 +144,8 @@ private:
 
 Spectrum pathTracedRadiance(const Scene& scene, const Ray& ray, const Wavelengths& wavelengths,
                             const EstimatorSettings& settings, RandomStream& random) {
-    return PathWalk(scene, wavelengths, settings, random).radiance(ray, Spectrum(1.0f), false);
+    return PathWalk(scene, wavelengths, settings, random)
+        .radiance(ray, Spectrum(1.0f), Spectrum::lanes);
 }
 
 std::unique_ptr<Estimator> makePathTracer(const EstimatorSettings& settings) {

@@ -4,8 +4,8 @@
 
 namespace etendue {
 
-float weightOf(BidirectionalSample& sample, std::span<const PathVertex> camera,
-               std::span<const PathVertex> light, const JoinDensities& join) {
+PathWeight weightOf(BidirectionalSample& sample, std::span<const PathVertex> camera,
+                    std::span<const PathVertex> light, const JoinDensities& join) {
     std::vector<VertexDensity>& path = sample.memory.path;
     path.clear();
     for (const PathVertex& v : camera) path.push_back(v.density);
@@ -22,13 +22,8 @@ float weightOf(BidirectionalSample& sample, std::span<const PathVertex> camera,
     if (s >= 2) path[t + 1].fromCamera = join.beforeLightEnd;
     const CameraSettings& frame = sample.view.camera.settings();
     const double lightPaths = 1.0 * sample.settings.lightPaths * frame.width * frame.height;
-    // Through a dispersive lens connections are made at each of four wavelengths, paths at one;
-    // unless a glass has left only one on either.
-    const bool isInDispersion =
-        camera.back().isInDispersion || (s > 0 && light.back().isInDispersion);
-    const double lanes = isParted(sample.view) && !isInDispersion ? Spectrum::lanes : 1.0;
     return balanceWeight(path, {static_cast<int>(s), static_cast<int>(t)},
-                         {sample.techniques, lanes * lightPaths});
+                         {sample.techniques, lightPaths});
 }
 
 bool isReachable(const View& view, const CameraSample& start, const CameraSubpath& path) {

@@ -110,6 +110,7 @@ struct Recorder {
                 if (splats) splats->add(c);
                 continue;
             }
+            if (!isOwn) continue;
             sum += c.value * c.weight;
             if (images) images->add(x, y, c.technique, c.value, c.weight);
         }
@@ -214,7 +215,11 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
                     const Filter& filter, Film& film, const RenderSettings& settings,
                     const std::function<bool(const RenderProgress&)>& onBatch) {
     const auto start = std::chrono::steady_clock::now();
-    const auto lightPaths = static_cast<std::uint64_t>(estimator.lightPathsPerSample());
+    const View view{scene, camera, filter, film.color() == FilmColor::xyz, film.window()};
+    auto lightPaths = static_cast<std::uint64_t>(estimator.lightPathsPerSample());
+    // Camera paths splat, too, behind a lens that parts the colours.
+    if (isParted(view) && estimator.hasCameraLight())
+        lightPaths = std::max<std::uint64_t>(lightPaths, 1);
     const std::vector<Part> parts = partsFor(film.window(), lightPaths > 0);
     std::vector<SplatList> lists;
     if (estimator.hasCameraLight()) film.expectCameraLight();
@@ -224,7 +229,6 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
     }
     const double pixels = static_cast<double>(film.pixelCount());
     const std::uint64_t badBefore = film.badSamples(), refusedBefore = scene.refusedRays();
-    const View view{scene, camera, filter, film.color() == FilmColor::xyz};
     Recorder recorder{view,          estimator,       film, settings.techniqueImages,
                       settings.seed, settings.sampler};
     RenderResult result;

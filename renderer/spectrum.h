@@ -78,8 +78,16 @@ inline float maxLane(const Spectrum& s) {
     return std::max(std::max(s[0], s[1]), std::max(s[2], s[3]));
 }
 
-/// The first lane, the hero's, standing for all four.
-inline Spectrum heroAlone(const Spectrum& s) { return {Spectrum::lanes * s[0], 0.0f, 0.0f, 0.0f}; }
+/// The first lane, the hero's, standing for as many as it does.
+inline Spectrum heroAlone(const Spectrum& s, float standsFor = Spectrum::lanes) {
+    return {standsFor * s[0], 0.0f, 0.0f, 0.0f};
+}
+
+/// One lane, and no light in the others.
+inline Spectrum laneAlone(const Spectrum& s, std::size_t lane) {
+    return Spectrum::fromLanes(
+        [&](int i) { return static_cast<std::size_t>(i) == lane ? s[i] : 0.0f; });
+}
 
 /// A scalar to choose by (light power, Russian roulette), not a colour measurement: the mean of the
 /// lanes in use.

@@ -34,6 +34,7 @@ public:
     // Not inlined, lest its variables leave the registers.
     [[gnu::noinline]] void add(const SplatList::Splat& splat) {
         const Reach columns = columnsOf(splat), rows = rowsOf(splat);
+        const float paths = splat.t == 1 ? 1.0f : film_.lightPathsPerSample();
         columnDensities_.clear();
         for (int x = columns.first; x <= columns.last; ++x)
             columnDensities_.push_back(
@@ -45,7 +46,7 @@ public:
                 const auto share = static_cast<float>(
                     columnDensities_[static_cast<std::size_t>(x - columns.first)] * rowDensity);
                 if (share == 0.0f) continue;
-                film_.addSplat(x, y, splat.value * (splat.weight * share));
+                film_.addSplat(x, y, splat.value * (splat.weight * share * paths));
                 if (images_)
                     images_->add(x, y, {splat.s, splat.t}, splat.value * share, splat.weight);
             }

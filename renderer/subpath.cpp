@@ -12,8 +12,9 @@ namespace {
 struct Leg {
     Ray ray;
     Spectrum throughput;
-    float pdfSolidAngle;  // of the direction; of a Dirac bounce its probability
-    bool isHeroOnly = false, isInDispersion = false;  // as PathVertex's
+    float pdfSolidAngle;                    // of the direction; of a Dirac bounce its probability
+    float heroStandsFor = Spectrum::lanes;  // as CameraSample's
+    bool isHeroOnly = false;                // as PathVertex's
 };
 
 /// The density of that direction, or place, at the first vertex after the walk's origin is the
@@ -30,15 +31,13 @@ std::optional<Escape> walk(const Scene& scene, Transport transport, const Wavele
     Spectrum attenuation(1.0f);
     while (path.size() < mostVertices) {
         const std::optional<SurfacePoint> hit = scene.closestHit(leg.ray);
-        if (!hit)
-            return Escape{leg.ray.direction, leg.throughput, leg.pdfSolidAngle, leg.isInDispersion};
+        if (!hit) return Escape{leg.ray.direction, leg.throughput, leg.pdfSolidAngle};
         PathVertex& vertex = path.emplace_back();
         PathVertex& previous = path[path.size() - 2];
         vertex.point = *hit;
         vertex.wo = -leg.ray.direction;
         vertex.throughput = leg.throughput;
         vertex.isHeroOnly = leg.isHeroOnly;
-        vertex.isInDispersion = leg.isInDispersion;
         vertex.density.isConnectable = true;
         vertex.density.*own = path.size() == 2 ? firstDensity(vertex)
                                                : densityAt(vertex, previous, leg.pdfSolidAngle);
@@ -53,9 +52,9 @@ std::optional<Escape> walk(const Scene& scene, Transport transport, const Wavele
         previous.density.*other = densityAt(previous, vertex, next->pdfSolidAngleReverse);
         leg.throughput *= next->weight;
         attenuation *= next->weight;
-        if (next->isHeroOnly) {
-            if (!leg.isHeroOnly) leg.throughput = heroAlone(leg.throughput);
-            leg.isHeroOnly = leg.isInDispersion = true;
+        if (next->isHeroOnly && !leg.isHeroOnly) {
+            leg.throughput = heroAlone(leg.throughput, leg.heroStandsFor);
+            leg.isHeroOnly = true;
         }
         const int depth = static_cast<int>(path.size()) - 1;
         if (settings.russianRouletteDepth > 0 && depth >= settings.russianRouletteDepth) {
@@ -108,7 +107,7 @@ void walkFromCamera(const Scene& scene, CameraSample& sample, const EstimatorSet
     PathVertex& lens = path.vertices.emplace_back();
     lens.kind = PathVertex::Kind::lens;
     lens.point = bareSurfacePoint(ray.origin, {}, ray.direction);
-    const Leg leg{{ray.origin, ray.direction}, sample.throughput, 0.0f, sample.isHeroOnly};
+    const Leg leg{{ray.origin, ray.direction}, sample.throughput, 0.0f, sample.heroStandsFor};
     const auto firstDensity = [&](const PathVertex& first) {
         return pdfArea(ray, length(first.point.position - ray.origin), first.point.geometricNormal);
     };

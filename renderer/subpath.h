@@ -28,8 +28,7 @@ struct PathVertex {
     /// What arrives from the vertex before. On a walk from the camera: pixel value per radiance
     /// that leaves toward `wo`. On a walk from a light: flux, W.
     Spectrum throughput;
-    bool isHeroOnly = false;      // …in the first lane alone, which stands for all four
-    bool isInDispersion = false;  // for a glass of the scene parted the colours on the way here
+    bool isHeroOnly = false;  // …in the first lane alone: a glass has parted the colours
     /// The walk's own density is known when the vertex is drawn, the other one once the vertex
     /// after it has scattered. Connectable unless the walk went on from here by a Dirac bounce;
     /// whether a connection can end here is for `canConnect` to say.
@@ -44,7 +43,6 @@ struct Escape {
     Vec3 direction;
     Spectrum throughput;
     float pdfSolidAngle;  // of drawing it; from the lens: equation (2)'s limit at infinity
-    bool isInDispersion;  // as PathVertex's
 };
 
 struct CameraSubpath {

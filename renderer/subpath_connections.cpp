@@ -19,6 +19,7 @@ public:
           camera_(sample.memory.camera),
           light_(sample.memory.light) {
         camera_.vertices.front().density.isConnectable = isReachable(view_, start_, camera_);
+        if (start_.origins) findDensities();
     }
 
     void makeAll() {
@@ -33,6 +34,33 @@ public:
     }
 
 private:
+    /// How much denser the hero's samples are at the first vertex than each lane's, where the ray
+    /// comes from at its wavelength.
+    void findDensities() {
+        const bool isEscape = camera_.vertices.size() < 2;
+        if (isEscape && !camera_.escape) return;
+        const CameraRay& ray = *start_.ray;
+        const float distance =
+            isEscape ? 0.0f : length(camera_.vertices[1].point.position - ray.origin);
+        const auto density = [&](const CameraRay& from) {
+            return isEscape ? pdfSolidAngle(from) : pdfArea(from, distance, from.direction);
+        };
+        for (std::size_t lane = 1; lane < Spectrum::lanes; ++lane)
+            if (const auto& origin = (*start_.origins)[lane])
+                overLane_[lane] = density(ray) / density(origin->ray);
+    }
+
+    /// The hero's weight, and those of the other lanes, which are as likely to be found by all
+    /// techniques but from the lens.
+    LaneWeights laneWeights(const PathWeight& hero) const {
+        LaneWeights weights;
+        for (std::size_t lane = 0; lane < weights.size(); ++lane)
+            weights[lane] = hero.byLens > 0.0f
+                                ? hero.weight / (1.0f + hero.byLens * (overLane_[lane] - 1.0f))
+                                : hero.weight;
+        return weights;
+    }
+
     /// s = 0: the camera's walk met an area light.
     void hitLight(std::size_t t) {
         const PathVertex& end = camera_.vertices[t - 1];
@@ -60,7 +88,6 @@ private:
         PathVertex& end = camera_.vertices.emplace_back();
         end.kind = PathVertex::Kind::infinite;
         end.density.fromCamera = escape.pdfSolidAngle;
-        end.isInDispersion = escape.isInDispersion;
         const PathVertex& last = camera_.vertices[t - 2];
         const EmitterHit hit{escape.direction, std::numeric_limits<float>::infinity(),
                              -escape.direction};
@@ -136,20 +163,20 @@ private:
         join.beforeCameraEnd = densityAt(camera_.vertices[t - 2], z, atCamera.pdfSolidAngleReverse);
         join.lightEnd = densityAt(y, z, atCamera.pdfSolidAngle);
         join.beforeLightEnd = lightOriginDensity(light_, s, y, atLight.pdfSolidAngleReverse);
-        // Where each walk is left with the hero, each lets it stand for all four.
-        const double stands = z.isHeroOnly && y.isHeroOnly ? 1.0 / Spectrum::lanes : 1.0;
+        // Where the light path is left with the hero, which stands for all four there, so it does
+        // for the camera's, be it left with the hero or not.
+        const double stands =
+            !y.isHeroOnly ? 1.0
+                          : (z.isHeroOnly ? 1.0 : double{start_.heroStandsFor}) / Spectrum::lanes;
         const Spectrum value = z.throughput * atCamera.value * atLight.value * y.throughput *
                                static_cast<float>(stands / distanceSquared);
         add(s, t, value,
             weightOf(sample_, sample_.cameraVertices(t), sample_.lightVertices(s), join));
     }
 
-    void add(std::size_t s, std::size_t t, const Spectrum& value, float weight) {
-        sample_.result.contributions.push_back(
-            {.technique = {static_cast<int>(s), static_cast<int>(t)},
-             .value = sample_.color.onFilm(value),
-             .weight = weight,
-             .film = start_.film});
+    void add(std::size_t s, std::size_t t, const Spectrum& value, const PathWeight& weight) {
+        contribute(start_, {static_cast<int>(s), static_cast<int>(t)}, value, laneWeights(weight),
+                   sample_.result.contributions);
     }
 
     BidirectionalSample& sample_;
@@ -158,6 +185,7 @@ private:
     CameraSample& start_;
     CameraSubpath& camera_;
     const LightSubpath& light_;
+    LaneWeights overLane_{1.0f, 1.0f, 1.0f, 1.0f};
 };
 
 }  // namespace

@@ -169,8 +169,8 @@ public:
         const double count = static_cast<double>(samples) * static_cast<double>(pixels);
         for (std::size_t i = 0; i < pathClassCount; ++i) {
             const auto sum = [&](std::size_t c) {
-                // A light path may fall on any pixel, a camera path on its own.
-                return own_[i][c] + splatted_[i][c] / static_cast<double>(pixels);
+                // A light path is a sample of all pixels, a camera path of one.
+                return byCamera_[i][c] + byLight_[i][c] / static_cast<double>(pixels);
             };
             const Vec3d rgb = rgbOf(color, {sum(0), sum(1), sum(2)});
             means[i] = (rgb.x + rgb.y + rgb.z) / (3.0 * count);
@@ -184,13 +184,11 @@ private:
     void holdAgainstEstimator(const View& view, SampleId id, const SamplePath& path) const {
         Sample sample;
         estimator_->takeSample(view, id, {}, sample);
-        Spectrum own, splatted, splattedAgain;
+        Spectrum own, splatted;
         for (const Contribution& c : sample.contributions)
             (c.isSplat ? splatted : own) += c.value * c.weight;
-        for (const Contribution& c : path.contributions)
-            if (c.isSplat) splattedAgain += c.value * c.weight;
         if (isFinite(own) && isFinite(splatted) &&
-            (own != path.ownPixel || splatted != splattedAgain))
+            (own != path.ownPixel || splatted != path.splatted))
             throw std::logic_error(fmt::format(
                 "seed {} pixel {},{} sample {}: a path traced again is not the estimator's",
                 id.seed, id.x, id.y, id.sample));
@@ -206,7 +204,7 @@ private:
 
     void count(std::size_t pathClass, const Contribution& c) const {
         const Spectrum value = c.value * c.weight;
-        Sums& sums = (c.isSplat ? splatted_ : own_)[pathClass];
+        Sums& sums = (c.technique.t == 1 ? byLight_ : byCamera_)[pathClass];
         for (std::size_t i = 0; i < 3; ++i) sums[i] += double{value[static_cast<int>(i)]};
     }
 
@@ -216,7 +214,7 @@ private:
     std::vector<Technique> alone_;  // of one length, to which both keep
     std::array<bool, pathClassCount> isLeftOut_{};
     bool looksAtPaths_ = false;
-    mutable std::array<Sums, pathClassCount> own_{}, splatted_{};
+    mutable std::array<Sums, pathClassCount> byCamera_{}, byLight_{};
 };
 
 }  // namespace

@@ -10,6 +10,11 @@ namespace etendue {
 
 namespace {
 
+void sumUp(const std::vector<Contribution>& contributions, SamplePath& path) {
+    for (const Contribution& c : contributions)
+        (c.isSplat ? path.splatted : path.ownPixel) += c.value * c.weight;
+}
+
 /// The walk of renderer/path_tracer.cpp once more, in the same arithmetic, with a record of what it
 /// meets. A test holds the two together to the bit.
 class RecordedPathTracing {
@@ -20,14 +25,16 @@ public:
           sample_(*record.camera),
           path_(record.cameraPath),
           record_(record),
-          throughput_(record.camera->throughput),
-          isHeroOnly_(record.camera->isHeroOnly) {}
+          throughput_(record.camera->throughput) {}
 
     void trace() {
         const CameraRay& cameraRay = *sample_.ray;
         path_.vertices.emplace_back().kind = PathVertex::Kind::lens;
         path_.vertices.back().point = bareSurfacePoint(cameraRay.origin, {}, cameraRay.direction);
-        record_.ownPixel = sample_.color.onFilm(radiance({cameraRay.origin, cameraRay.direction}));
+        std::vector<Contribution> whole;
+        contribute(sample_, {}, radiance({cameraRay.origin, cameraRay.direction}),
+                   {1.0f, 1.0f, 1.0f, 1.0f}, whole);
+        sumUp(whole, record_);
     }
 
 private:
@@ -55,9 +62,9 @@ private:
             noteScattering(*next);
             throughput_ *= next->weight;
             attenuation_ *= next->weight;
-            if (next->isHeroOnly) {
-                if (!isHeroOnly_) throughput_ = heroAlone(throughput_);
-                isHeroOnly_ = isInDispersion_ = true;
+            if (next->isHeroOnly && !isHeroOnly_) {
+                throughput_ = heroAlone(throughput_, sample_.heroStandsFor);
+                isHeroOnly_ = true;
             }
             if (!survivesRoulette(depth)) return result;
             pdfSolidAngle_ = next->isDirac ? std::nullopt : std::optional(next->pdfSolidAngle);
@@ -72,7 +79,6 @@ private:
         vertex.wo = -ray.direction;
         vertex.throughput = throughput_;
         vertex.isHeroOnly = isHeroOnly_;
-        vertex.isInDispersion = isInDispersion_;
         vertex.density.isConnectable = true;
         vertex.density.fromCamera =
             path_.vertices.size() == 2
@@ -90,10 +96,8 @@ private:
 
     void addTerm(int s, std::size_t t, const Spectrum& value, float weight) {
         if (isBlack(value)) return;
-        record_.contributions.push_back({.technique = {s, static_cast<int>(t)},
-                                         .value = sample_.color.onFilm(throughput_ * value),
-                                         .weight = weight,
-                                         .film = sample_.film});
+        contribute(sample_, {s, static_cast<int>(t)}, throughput_ * value,
+                   {weight, weight, weight, weight}, record_.contributions);
     }
 
     Spectrum lanesOf(const Spectrum& rgb) const { return sample_.color.wavelengths.lanesOf(rgb); }
@@ -116,8 +120,7 @@ private:
 
     Spectrum environment(const Ray& ray) {
         path_.escape = Escape{ray.direction, throughput_,
-                              path_.vertices.size() == 1 ? pdfSolidAngle(*sample_.ray) : drawn_,
-                              isInDispersion_};
+                              path_.vertices.size() == 1 ? pdfSolidAngle(*sample_.ray) : drawn_};
         Spectrum sum;
         const LightTable& lights = scene_.lights();
         const EmitterHit hit{ray.direction, std::numeric_limits<float>::infinity(), -ray.direction};
@@ -166,7 +169,7 @@ private:
     CameraSubpath& path_;
     SamplePath& record_;
     Spectrum throughput_, attenuation_ = Spectrum(1.0f);
-    bool isHeroOnly_, isInDispersion_ = false;  // as PathVertex's
+    bool isHeroOnly_ = false;  // as PathVertex's
     /// With which the last scattering drew the ray; none after the camera or a Dirac lobe, where no
     /// light sample competes.
     std::optional<float> pdfSolidAngle_;
@@ -201,8 +204,7 @@ void retraceBidirectional(const View& view, const EstimatorSettings& settings, S
     std::swap(memory.camera, result.cameraPath);
     if (lightPaths > 0) std::swap(result.lightPaths.back(), memory.light);
     std::swap(result.contributions, found.contributions);
-    for (const Contribution& c : result.contributions)
-        if (!c.isSplat) result.ownPixel += c.value * c.weight;
+    sumUp(result.contributions, result);
 }
 
 }  // namespace
@@ -213,7 +215,7 @@ void retraceSample(const View& view, const Estimator& estimator, const Estimator
     result.cameraPath.vertices.clear();
     result.cameraPath.escape.reset();
     result.contributions.clear();
-    result.ownPixel = {};
+    result.ownPixel = result.splatted = {};
     if (settings.kind == "pt") {
         result.lightPaths.clear();
         retracePathTracing(view, settings, id, result);

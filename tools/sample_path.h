@@ -20,6 +20,7 @@ struct SamplePath {
     /// The sum of those that are not splatted, weighted: to the bit what the sample adds to its own
     /// pixel, if the film takes it. As all values here: RGB, of a spectral render XYZ.
     Spectrum ownPixel;
+    Spectrum splatted;  // the sum of the others, wherever they land
 };
 
 /// Traces a sample of the estimator that makeEstimator makes of `settings`. The memory of `result`

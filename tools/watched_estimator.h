@@ -28,9 +28,11 @@ public:
         for (const Contribution& c : result.contributions) {
             const Spectrum value = c.value * c.weight;
             if (!isUsable(value)) continue;
-            // A light path may fall on any pixel, and is one sample of all of them.
-            if (c.isSplat)
+            // A light path is a sample of all pixels, a camera path of one.
+            if (c.technique.t == 1)
                 note(value * (1.0f / framePixels_));
+            else if (c.isSplat)
+                note(value);
             else
                 own += value;
         }

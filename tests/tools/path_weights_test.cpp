@@ -151,7 +151,7 @@ Weights weightsOf(const Path& path, const SampleCounts& counts) {
         logs.push_back(log);
         most = std::max(most, log);
         if (technique == path.technique) own = log;
-        weights.sum += balanceWeight(densities, technique, counts);
+        weights.sum += balanceWeight(densities, technique, counts).weight;
     }
     double all = 0.0;
     for (const double log : logs) all += std::exp(log - most);

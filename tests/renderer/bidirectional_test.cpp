@@ -159,8 +159,7 @@ TEST_CASE("Estimators: …through lenses of glass that part the colours" *
     }
 }
 
-TEST_CASE("Estimators: …and through a prism" * doctest::test_suite("statistical")) {
-    const std::string prism = R"(
+const std::string prism = R"(
 [[material]]
 name = "flint"
 type = "dielectric"
@@ -171,9 +170,44 @@ shape = "box"
 material = "flint"
 transform = [{scale = [0.7, 0.5, 0.4]}, {rotate = [0, 1, 0, 35]}, {translate = [0.3, 0.9, 1.2]}]
 )";
+
+TEST_CASE("Estimators: …and through a prism" * doctest::test_suite("statistical")) {
     // Through the prism a camera path is left with its hero, and so is a light path.
     for (const std::string& camera : {thinLens, pinhole})
         checkAgreement(sceneWith(camera, room(matte) + areaLamp + prism), {"bdpt"}, 128, 0.08);
+}
+
+TEST_CASE("Estimators: …through such a lens and a prism, and by mirrors" *
+          doctest::test_suite("statistical")) {
+    const std::string lens =
+        (std::filesystem::path(__FILE__).parent_path() / "../../scenes/lenses/petzval-50mm.toml")
+            .string();
+    const std::string camera = "lens = \"" + lens +
+                               "\"\nterms = 24\ndegree = 9\nfocus_distance = 3.4\n"
+                               "from = [0.2, 1, 3.9]\nto = [0, 0.9, 0]\n";
+    checkAgreement(sceneWith(camera, room(matte) + areaLamp + prism), {"bdpt"}, 96, 0.08);
+    checkAgreement(sceneWith(camera, room(mirrors) + areaLamp), {"bdpt"}, 96, 0.08);
+    // In a bulb of such glass, which leaves each light path its hero, and camera paths theirs where
+    // they look into it.
+    checkAgreement(sceneWith(camera, room(matte) + R"(
+[[material]]
+name = "bulb"
+type = "dielectric"
+abbe_number = 8
+[[material]]
+name = "filament"
+color = [0, 0, 0]
+emission = [3, 3, 2]
+[[mesh]]
+shape = "sphere"
+material = "bulb"
+transform = [{scale = 0.6}, {translate = [-0.3, 2.2, 0.5]}]
+[[mesh]]
+shape = "sphere"
+material = "filament"
+transform = [{scale = 0.5}, {translate = [-0.3, 2.2, 0.5]}]
+)"),
+                   {"bdpt"}, 96, 0.08);
 }
 
 TEST_CASE("Estimators: a mirror that shines is seen once, by the camera's walk and the light's") {

@@ -76,6 +76,113 @@ TEST_CASE("Estimators: a constant picture stays one under every filter, at its b
     }
 }
 
+/// A frame of 12 × 8 under a white sky, through a lens whose colours part by whole pixels.
+LoadedScene partedSky(const std::string& filter) {
+    const std::filesystem::path lens =
+        std::filesystem::path(__FILE__).parent_path() / "../../scenes/lenses/petzval-50mm.toml";
+    return sceneFromText("[film]\nwidth = 12\nheight = 8\nfilter = \"" + filter +
+                         "\"\n[camera]\nlens = \"" + lens.string() +
+                         "\"\nterms = 16\ndegree = 7\nsensor_width_mm = 0.15\n" + sky);
+}
+
+/// Of the sky's picture, seed by seed: each camera ray for its hero alone, by no estimator.
+std::vector<std::vector<float>> skyByHeroes(const LoadedScene& loaded, std::uint32_t samples) {
+    const Filter filter(loaded.film.filter, loaded.film.filterRadius);
+    const View view{*loaded.scene, *loaded.camera, filter, true};
+    std::vector<std::vector<float>> result;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        Film film = filmOf(loaded);
+        film.expectCameraLight();
+        for (int y = 0; y < loaded.film.height; ++y)
+            for (int x = 0; x < loaded.film.width; ++x)
+                for (std::uint32_t i = 0; i < samples; ++i) {
+                    const CameraSample sample = drawCameraSample(view, {seed, x, y, i});
+                    const Wavelengths& wavelengths = sample.color.wavelengths;
+                    const Spectrum white = wavelengths.lanesOf(Spectrum(1.0f));
+                    const float weight = sample.ray ? sample.ray->weight : 0.0f;
+                    film.add(x, y, sample.color.onFilm(heroAlone(white * weight)));
+                }
+        film.addSamples(samples);
+        result.push_back(film.channels().front().pixels);
+    }
+    return result;
+}
+
+TEST_CASE("Estimators: light that a lens parts is as bright at the frame's border" *
+          doctest::test_suite("statistical")) {
+    for (const std::string filter : {"box", "blackman-harris"}) {
+        CAPTURE(filter);
+        const LoadedScene loaded = partedSky(filter);
+        REQUIRE(loaded.camera->settings().isDispersive);
+        const auto expected = skyByHeroes(loaded, 4096);
+        for (const std::string kind : {"pt", "bdpt"}) {
+            CAPTURE(kind);
+            std::vector<std::vector<float>> pictures;
+            for (std::uint64_t seed = 101; seed <= 112; ++seed) {
+                Film film = filmOf(loaded);
+                RenderSettings settings;
+                settings.samples = 256;
+                settings.seed = seed;
+                renderInto(film, loaded, kind, settings);
+                pictures.push_back(film.channels().front().pixels);
+            }
+            // Tiles of one pixel: the border is a third of the frame, its corners are four.
+            const PictureComparison comparison = comparePictures(pictures, expected, 12, 1);
+            CAPTURE(comparison.smallestP);
+            CAPTURE(comparison.relativeBias);
+            CAPTURE(comparison.relativeBiasHalfWidth);
+            CHECK(comparison.agree());
+            CHECK(comparison.isEquivalent(0.01));
+        }
+    }
+}
+
+TEST_CASE("Estimators: a hero that goes on alone has all of its ray's weight back") {
+    const LoadedScene loaded = partedSky("box");
+    const Filter filter(loaded.film.filter, loaded.film.filterRadius);
+    const View view{*loaded.scene, *loaded.camera, filter, true};
+    int rays = 0, lonely = 0;
+    for (std::uint32_t i = 0; i < 10; ++i)
+        for (int y = 0; y < loaded.film.height; ++y)
+            for (int x = 0; x < loaded.film.width; ++x) {
+                const CameraSample sample = drawCameraSample(view, {3, x, y, i});
+                if (!sample.ray) continue;
+                ++rays;
+                lonely += sample.heroStandsFor < 3.0f;
+                CHECK(heroAlone(sample.throughput, sample.heroStandsFor)[0] ==
+                      doctest::Approx(Spectrum::lanes * sample.ray->weight).epsilon(1e-6));
+            }
+    CHECK(rays > 800);
+    CHECK(lonely > 20);  // near the border, other wavelengths come from outside the frame
+}
+
+TEST_CASE("Estimators: a lens that parts colours adds little noise of colour" *
+          doctest::test_suite("statistical")) {
+    // Under a white sky there is no other noise: what light one sample of a pixel misses comes with
+    // those of its neighbours, but for the share that lands elsewhere by chance. A hero alone has
+    // twelve times its mean squared for variance in the blue.
+    const LoadedScene loaded = partedSky("box");
+    const auto blueVariance = [&](const std::vector<std::vector<float>>& pictures) {
+        double sum = 0.0;
+        for (std::size_t i = 2; i < pictures.front().size(); i += 3) {
+            std::vector<double> values;
+            for (const std::vector<float>& picture : pictures) values.push_back(double{picture[i]});
+            sum += summarize(values).variance;
+        }
+        return sum;
+    };
+    std::vector<std::vector<float>> pictures;
+    for (std::uint64_t seed = 101; seed <= 112; ++seed) {
+        Film film = filmOf(loaded);
+        RenderSettings settings;
+        settings.samples = 64;
+        settings.seed = seed;
+        renderInto(film, loaded, "pt", settings);
+        pictures.push_back(film.channels().front().pixels);
+    }
+    CHECK(blueVariance(pictures) < 0.25 * blueVariance(skyByHeroes(loaded, 64)));
+}
+
 TEST_CASE("Estimators: a wall is as bright through a thin lens, wherever that is focused") {
     for (const std::string focus : {"0.5", "1.25", "10", "inf"}) {
         CAPTURE(focus);

@@ -2,6 +2,7 @@
 // anew from the paths' vertices and multiplied up for each technique.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -9,6 +10,7 @@
 #include "renderer/bidirectional_sample.h"
 #include "renderer/parallel.h"
 #include "renderer/scattering.h"
+#include "tests/lens/prescriptions.h"
 #include "tests/support/scenes.h"
 #include "tests/tools/every_material_scene.h"
 #include "tools/sample_path.h"
@@ -172,7 +174,7 @@ public:
         markReachability(view_, sample_);
         drawAgain();
         for (const Contribution& c : sample_.contributions) {
-            const auto path = c.technique.t == 1 ? splatted(c) : gathered(c.technique);
+            const auto path = c.technique.t == 1 ? splatted(c) : gathered(c);
             if (path) check(*path, wavelengths_, c.weight);
         }
     }
@@ -211,16 +213,26 @@ private:
         }
     }
 
+    /// That of the wavelength whose light it is.
+    template <class Lanes>
+    static const auto& landingOn(Vec2 film, const Lanes& lanes) {
+        const auto lane = std::find_if(lanes.begin(), lanes.end(),
+                                       [&](const auto& l) { return l && l->film == film; });
+        REQUIRE(lane != lanes.end());
+        return **lane;
+    }
+
     std::optional<Path> splatted(const Contribution& c) const {
         const LightSubpath& light = sample_.lightPaths.front();
         const auto s = static_cast<std::size_t>(c.technique.s);
         const PathVertex& end = light.vertices[s - 1];
-        const auto connection =
+        const auto connections =
             end.kind == PathVertex::Kind::infinite
-                ? view_.camera.connectToInfinity(end.wo, apertureUniforms_[s - 1], wavelengths_)
-                : view_.camera.connect(end.point.position, apertureUniforms_[s - 1], wavelengths_);
+                ? view_.camera.connectEachToInfinity(end.wo, apertureUniforms_[s - 1], wavelengths_)
+                : view_.camera.connectEach(end.point.position, apertureUniforms_[s - 1],
+                                           wavelengths_);
         Path path;
-        path.ray = connection.value().ray;
+        path.ray = landingOn(c.film, connections).ray;
         path.isLensConnectable = true;
         appendLight(path, s);
         path.light = light.light;
@@ -228,12 +240,14 @@ private:
         return path;
     }
 
-    std::optional<Path> gathered(Technique technique) const {
+    std::optional<Path> gathered(const Contribution& c) const {
+        const Technique technique = c.technique;
         const auto t = static_cast<std::size_t>(technique.t);
         const auto s = static_cast<std::size_t>(technique.s);
         const CameraSubpath& camera = sample_.cameraPath;
         Path path;
-        path.ray = *sample_.camera->ray;
+        path.ray = sample_.camera->origins ? landingOn(c.film, *sample_.camera->origins).ray
+                                           : *sample_.camera->ray;
         path.isLensConnectable = camera.vertices.front().density.isConnectable;
         path.technique = technique;
         const std::size_t own = std::min(t, camera.vertices.size());
@@ -349,6 +363,13 @@ TEST_CASE("Weights: on every scene's paths they are those of the products of all
         checkWeights(loadScene(file, options), 1000000);
     }
     CHECK(count >= 9);
+}
+
+TEST_CASE("Weights: …and on those of each wavelength that a lens parts") {
+    const std::string lens = lensFile("double-gauss-50mm-f1.1.toml").string();
+    checkWeights(sceneFromText(dispersiveFrame(lens) + everyMaterialRoom + lampAndSky + pointAndSun,
+                               {"estimator.kind=bdpt"}),
+                 50000);
 }
 
 TEST_CASE("Weights: …and on those of every material and light, a shining mirror among them") {

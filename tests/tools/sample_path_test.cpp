@@ -51,15 +51,17 @@ void checkAgainstEstimator(const Case& c, std::size_t leastLit) {
     forEachSample([&](SampleId id) {
         Sample sample;
         c.estimator->takeSample(c.view, id, {}, sample);
-        const Spectrum expected =
-            sample.contributions.empty() ? Spectrum() : sample.contributions.front().value;
+        Spectrum ownPixel, splatted;
+        for (const Contribution& found : sample.contributions)
+            (found.isSplat ? splatted : ownPixel) += found.value * found.weight;
         const SamplePath path = c.retrace(id);
-        wrong += path.ownPixel != expected;
-        lit += !isBlack(expected);
-        Spectrum sum;
-        for (const Contribution& term : path.contributions) sum += term.value * term.weight;
+        wrong += path.ownPixel != ownPixel || path.splatted != splatted;
+        lit += !isBlack(ownPixel);
+        Spectrum ownSum, splatSum;
+        for (const Contribution& term : path.contributions)
+            (term.isSplat ? splatSum : ownSum) += term.value * term.weight;
         // A dozen terms, each rounded a few times.
-        wrongSums += !isNear(sum, expected, 1e-5f);
+        wrongSums += !isNear(ownSum, ownPixel, 1e-5f) || !isNear(splatSum, splatted, 1e-5f);
     });
     CHECK(wrong == 0);
     CHECK(wrongSums == 0);

@@ -52,8 +52,22 @@ void PolynomialLens::traceEach(SensorPoint sensor, AperturePoint aperture,
     if (!hero) return;
     origins[0] = originOf(*hero, sensor, aperture, wavelengthsNm.front());
     if (!origins[0]) return;
-    for (std::size_t i = 1; i < wavelengthsNm.size(); ++i)
-        origins[i] = originNear(*origins[0], hero->pupil, wavelengthsNm[i]);
+    const auto stateOf = [](const RayOrigin& origin) {
+        Eigen::Vector4d state;
+        state << origin.sensor.mm, origin.aperture.mm;
+        return state;
+    };
+    // Origins move nearly as the indices do, and those as 1/λ² (Cauchy).
+    const auto inverseSquare = [&](std::size_t i) {
+        return 1.0 / (wavelengthsNm[i] * wavelengthsNm[i]);
+    };
+    const Eigen::Vector4d start = stateOf(*origins[0]);
+    Eigen::Vector4d moved(0.0, 0.0, 0.0, 0.0);  // per inverse square, by the one before
+    for (std::size_t i = 1; i < wavelengthsNm.size(); ++i) {
+        const double by = inverseSquare(i) - inverseSquare(0);
+        origins[i] = originNear(start + by * moved, hero->pupil, wavelengthsNm[i]);
+        if (origins[i] && by != 0.0) moved = (stateOf(*origins[i]) - start) / by;
+    }
 }
 
 std::optional<RayOrigin> PolynomialLens::originOf(const PupilRay& mapped, SensorPoint sensor,
@@ -67,12 +81,10 @@ std::optional<RayOrigin> PolynomialLens::originOf(const PupilRay& mapped, Sensor
     return RayOrigin{sensor, aperture, *ray, map_.etendue(mapped)};
 }
 
-std::optional<RayOrigin> PolynomialLens::originNear(const RayOrigin& near,
+std::optional<RayOrigin> PolynomialLens::originNear(Eigen::Vector4d at,
                                                     const PupilState<double>& leaving,
                                                     double wavelengthNm) const {
     const double toleranceMm = sightToleranceRadians * focalLengthMm_;
-    Eigen::Vector4d at;
-    at << near.sensor.mm, near.aperture.mm;
     constexpr int mostSteps = 8;
     for (int i = 0; i < mostSteps; ++i) {
         const SensorPoint sensor{at.head<2>()};

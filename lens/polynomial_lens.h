@@ -73,8 +73,9 @@ private:
     /// What trace() makes of it, unless rims or aperture block it.
     std::optional<RayOrigin> originOf(const PupilRay& mapped, SensorPoint sensor,
                                       AperturePoint aperture, double wavelengthNm) const;
-    /// The origin of the ray that leaves as `leaving`, sought from `near` on.
-    std::optional<RayOrigin> originNear(const RayOrigin& near, const PupilState<double>& leaving,
+    /// The origin of the ray that leaves as `leaving`, sought from the sensor and aperture point
+    /// `at` on.
+    std::optional<RayOrigin> originNear(Eigen::Vector4d at, const PupilState<double>& leaving,
                                         double wavelengthNm) const;
     bool canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm) const;
     /// The end of our search from a guess, and how it went; the connection's own sensor point is

@@ -1,6 +1,8 @@
 #include "renderer/render.h"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <chrono>
 #include <mutex>
 #include <span>
@@ -70,6 +72,25 @@ void keepFirst(std::vector<BadSample>& bad) {
     bad.resize(std::min(bad.size(), badSamplesKept));
 }
 
+/// What all techniques of one camera path splat: each of its wavelengths lands in one place.
+class LaneSums {
+public:
+    void add(const Contribution& c) {
+        std::size_t lane = 0;
+        while (lane < count_ && !(sums_[lane].film == c.film)) ++lane;
+        if (lane == count_) {
+            assert(count_ < sums_.size());
+            sums_[count_++] = {.technique = {}, .value = {}, .film = c.film, .isSplat = true};
+        }
+        sums_[lane].value += c.value * c.weight;
+    }
+    std::span<const Contribution> sums() const { return std::span(sums_).first(count_); }
+
+private:
+    std::array<Contribution, Spectrum::lanes> sums_;
+    std::size_t count_ = 0;
+};
+
 /// Everything a thread needs to take samples.
 struct Recorder {
     const View& view;
@@ -100,6 +121,7 @@ struct Recorder {
                              {.ownPixel = isOwn, .firstHit = isOwn && film.wantsFeatures()},
                              sample);
         Spectrum sum;
+        LaneSums lanes;
         for (const Contribution& c : sample.contributions) {
             if (!isUsable(c.value * c.weight)) {
                 film.countBad();
@@ -107,12 +129,22 @@ struct Recorder {
                 continue;
             }
             if (c.isSplat) {
-                if (splats) splats->add(c);
+                if (c.technique.t != 1) lanes.add(c);
+                // Of a camera path one technique's share, without the others', is for the images.
+                if (splats && (c.technique.t == 1 || images)) splats->add(c);
                 continue;
             }
             if (!isOwn) continue;
             sum += c.value * c.weight;
             if (images) images->add(x, y, c.technique, c.value, c.weight);
+        }
+        for (const Contribution& lane : lanes.sums()) {
+            if (!isUsable(lane.value)) {
+                film.countBad();
+                rememberBad({x, y, index, {}});
+            } else if (splats) {
+                splats->add(lane);
+            }
         }
         if (!isOwn) return;
         if (hasCameraLight || !isBlack(sum))

@@ -46,8 +46,9 @@ public:
                 const auto share = static_cast<float>(
                     columnDensities_[static_cast<std::size_t>(x - columns.first)] * rowDensity);
                 if (share == 0.0f) continue;
-                film_.addSplat(x, y, splat.value * (splat.weight * share * paths));
-                if (images_)
+                if (splat.t <= 1)
+                    film_.addSplat(x, y, splat.value * (splat.weight * share * paths));
+                if (images_ && splat.t >= 1)
                     images_->add(x, y, {splat.s, splat.t}, splat.value * share, splat.weight);
             }
         }

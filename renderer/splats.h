@@ -20,7 +20,8 @@ public:
         Spectrum value;  // what the film adds, not weighted
         Vec2 film;
         float weight;
-        std::uint16_t s, t;  // the technique
+        std::uint16_t s, t;  // the technique; t = 0: all of a camera path's, which the film gets,
+                             // as the images get those with t ≥ 2 each
     };
 
     SplatList(const FrameWindow& window, const Filter& filter);

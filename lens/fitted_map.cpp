@@ -61,6 +61,14 @@ std::optional<PupilRay> FittedMap::pupilRay(SensorPoint sensor, AperturePoint ap
     return mapped;
 }
 
+std::optional<PupilState<double>> FittedMap::pupilState(SensorPoint sensor, AperturePoint aperture,
+                                                        double wavelengthNm) const {
+    if (!apertureMap_) return pupilOf(exit_.values({sensor.mm, aperture.mm, wavelengthNm}));
+    const std::optional<PupilRay> mapped = sensorStateRay(sensor, aperture, wavelengthNm);
+    if (!mapped) return {};
+    return mapped->pupil;
+}
+
 std::optional<ExitRay> FittedMap::exitRay(const PupilRay& mapped) const {
     if (!(mapped.throughput > 0.0)) return {};
     return exitRayOf(sphere_, mapped.pupil, mapped.bySensorAndAperture.leftCols<2>(),

@@ -61,11 +61,12 @@ void PolynomialLens::traceEach(SensorPoint sensor, AperturePoint aperture,
     const auto inverseSquare = [&](std::size_t i) {
         return 1.0 / (wavelengthsNm[i] * wavelengthsNm[i]);
     };
+    const Leaving leaving{hero->pupil, hero->bySensorAndAperture.inverse()};
     const Eigen::Vector4d start = stateOf(*origins[0]);
     Eigen::Vector4d moved(0.0, 0.0, 0.0, 0.0);  // per inverse square, by the one before
     for (std::size_t i = 1; i < wavelengthsNm.size(); ++i) {
         const double by = inverseSquare(i) - inverseSquare(0);
-        origins[i] = originNear(start + by * moved, hero->pupil, wavelengthsNm[i]);
+        origins[i] = originNear(start + by * moved, leaving, wavelengthsNm[i]);
         if (origins[i] && by != 0.0) moved = (stateOf(*origins[i]) - start) / by;
     }
 }
@@ -81,25 +82,30 @@ std::optional<RayOrigin> PolynomialLens::originOf(const PupilRay& mapped, Sensor
     return RayOrigin{sensor, aperture, *ray, map_.etendue(mapped)};
 }
 
-std::optional<RayOrigin> PolynomialLens::originNear(Eigen::Vector4d at,
-                                                    const PupilState<double>& leaving,
+std::optional<RayOrigin> PolynomialLens::originNear(Eigen::Vector4d at, const Leaving& leaving,
                                                     double wavelengthNm) const {
+    const auto missOf = [&](const PupilState<double>& there) {
+        return Eigen::Vector4d(leaving.pupil.x - there.x, leaving.pupil.y - there.y,
+                               leaving.pupil.directionX - there.directionX,
+                               leaving.pupil.directionY - there.directionY);
+    };
+    const auto isNearDomain = [&] {  // far beyond it powers overflow
+        constexpr double margin = 1.2;
+        return (at.head<2>().cwiseAbs().array() <= margin * domain_.sensorHalfSizeMm.array())
+                   .all() &&
+               at.tail<2>().norm() <= margin * domain_.apertureRadiusMm;
+    };
+    // The derivatives of another wavelength differ by a hundredth: they take the first step.
+    if (!isNearDomain()) return {};
+    const auto first = map_.pupilState({at.head<2>()}, {at.tail<2>()}, wavelengthNm);
+    if (!first) return {};
+    at += leaving.byPupil * missOf(*first);
     const double toleranceMm = sightToleranceRadians * focalLengthMm_;
     constexpr int mostSteps = 8;
-    for (int i = 0; i < mostSteps; ++i) {
-        const SensorPoint sensor{at.head<2>()};
-        const AperturePoint aperture{at.tail<2>()};
-        // Far beyond the domain powers overflow.
-        constexpr double margin = 1.2;
-        if (!(sensor.mm.cwiseAbs().array() <= margin * domain_.sensorHalfSizeMm.array()).all() ||
-            !(aperture.mm.norm() <= margin * domain_.apertureRadiusMm))
-            return {};
-        const auto mapped = map_.pupilRay(sensor, aperture, wavelengthNm);
+    for (int i = 0; i < mostSteps && isNearDomain(); ++i) {
+        const auto mapped = map_.pupilRay({at.head<2>()}, {at.tail<2>()}, wavelengthNm);
         if (!mapped) return {};
-        const PupilState<double>& there = mapped->pupil;
-        const Eigen::Vector4d miss(leaving.x - there.x, leaving.y - there.y,
-                                   leaving.directionX - there.directionX,
-                                   leaving.directionY - there.directionY);
+        const Eigen::Vector4d miss = missOf(mapped->pupil);
         // One more step squares what is missing.
         at += mapped->bySensorAndAperture.inverse() * miss;
         if (miss.head<2>().norm() <= toleranceMm && miss.tail<2>().norm() <= sightToleranceRadians)

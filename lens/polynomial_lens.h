@@ -73,9 +73,14 @@ private:
     /// What trace() makes of it, unless rims or aperture block it.
     std::optional<RayOrigin> originOf(const PupilRay& mapped, SensorPoint sensor,
                                       AperturePoint aperture, double wavelengthNm) const;
-    /// The origin of the ray that leaves as `leaving`, sought from the sensor and aperture point
+    /// How a ray leaves, and how sensor and aperture point move with that at its own wavelength.
+    struct Leaving {
+        PupilState<double> pupil;
+        Eigen::Matrix4d byPupil;
+    };
+    /// Where such a ray comes from at another wavelength, sought from the sensor and aperture point
     /// `at` on.
-    std::optional<RayOrigin> originNear(Eigen::Vector4d at, const PupilState<double>& leaving,
+    std::optional<RayOrigin> originNear(Eigen::Vector4d at, const Leaving& leaving,
                                         double wavelengthNm) const;
     bool canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm) const;
     /// The end of our search from a guess, and how it went; the connection's own sensor point is

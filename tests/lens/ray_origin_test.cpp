@@ -32,7 +32,7 @@ struct Contender {
     Eigen::Vector2d fieldMm;
 };
 
-std::vector<Contender> contenders() {
+std::vector<Contender> makeContenders() {
     std::vector<Contender> result;
     const Prescription gauss = doubleGauss(),
                        petzval = loadPrescription(lensFile("petzval-50mm.toml"));
@@ -60,6 +60,11 @@ std::vector<Contender> contenders() {
                           sensorDistanceMm(paraxialData(OpticalSystem(petzval)), 1200.0)),
                       searched, Eigen::Vector2d(7.0, 5.0)});
     return result;
+}
+
+const std::vector<Contender>& contenders() {
+    static const std::vector<Contender> all = makeContenders();
+    return all;
 }
 
 /// Of two rays as lines.

@@ -91,8 +91,8 @@ public:
     /// What that sample met; not called for one that met nothing. As for add(), a value that is not
     /// finite is counted and left out.
     bool addFeatures(int x, int y, const FilmFeatures& features);
-    /// From now on light is splatted, by so many light paths of the whole frame in each sample, or
-    /// camera paths where there are no others. To be called before addSplat(); as many bytes again.
+    /// From now on light is splatted, by so many light paths of the whole frame in each sample. To
+    /// be called before addSplat(); as many bytes again.
     void expectSplats(std::uint64_t lightPathsPerSample);
     /// Adds light that a light path brought to pixel (x, y) of the window: the film holds the mean
     /// over all light paths. The value must be finite and not negative (isUsable).
@@ -103,17 +103,30 @@ public:
             state_.sampleLuminance[pixel] += static_cast<float>(
                 samplesPerLightPath_ * luminanceOf(Vec3d{value[0], value[1], value[2]}));
     }
-    /// Has pixels first … last of a row brought near, for what will be splatted on them soon. To be
-    /// inlined, since GCC drops calls to a function that does nothing but prefetch.
-    [[gnu::always_inline]] void expectSplat(int first, int last, int y) const {
+    /// Has pixels first … last of a row brought near, for what a light path or a camera's will
+    /// splat on them soon. To be inlined, since GCC drops calls to a function that does nothing but
+    /// prefetch.
+    [[gnu::always_inline]] void expectSplat(int first, int last, int y, bool isLights) const {
         const std::size_t begin = pixelNumber(first, y), end = pixelNumber(last, y) + 1;
-        prefetch(state_.splatSums.data() + begin, state_.splatSums.data() + end);
+        const ExactColor* sums = (isLights ? state_.splatSums : state_.cameraSums).data();
+        prefetch(sums + begin, sums + end);
         if (!state_.sampleLuminance.empty())
             prefetch(state_.sampleLuminance.data() + begin, state_.sampleLuminance.data() + end);
     }
-    /// Those of expectSplats: what a camera path splats is to be multiplied by, of which there is
-    /// one to a pixel.
-    float lightPathsPerSample() const { return static_cast<float>(1.0 / samplesPerLightPath_); }
+    /// From now on camera samples bring light to other pixels than their own. To be called before
+    /// addCameraSplat().
+    void expectCameraSplats() {
+        if (layers_.luminanceVariance) state_.sampleLuminance.resize(pixelCount());
+    }
+    /// Adds light that a camera sample, of another pixel or of this one, brought to pixel (x, y).
+    /// As for addSplat() it must be usable.
+    void addCameraSplat(int x, int y, const Spectrum& value) {
+        const std::size_t pixel = pixelNumber(x, y);
+        if (!state_.cameraSums[pixel].add(value[0], value[1], value[2])) countRounded();
+        if (!state_.sampleLuminance.empty())
+            state_.sampleLuminance[pixel] +=
+                static_cast<float>(luminanceOf(Vec3d{value[0], value[1], value[2]}));
+    }
     void addLightPaths(std::uint64_t count) { state_.lightPaths += count; }
     bool countBad();
     /// Every pixel of the window has had `count` more samples: the means' divisor.

@@ -248,17 +248,17 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
                     const std::function<bool(const RenderProgress&)>& onBatch) {
     const auto start = std::chrono::steady_clock::now();
     const View view{scene, camera, filter, film.color() == FilmColor::xyz, film.window()};
-    auto lightPaths = static_cast<std::uint64_t>(estimator.lightPathsPerSample());
-    // Camera paths splat, too, behind a lens that parts the colours.
-    if (isParted(view) && estimator.hasCameraLight())
-        lightPaths = std::max<std::uint64_t>(lightPaths, 1);
-    const std::vector<Part> parts = partsFor(film.window(), lightPaths > 0);
+    const auto lightPaths = static_cast<std::uint64_t>(estimator.lightPathsPerSample());
+    const bool camerasSplat = estimator.hasCameraLight() && isParted(view),
+               isSplatting = lightPaths > 0 || camerasSplat;
+    const std::vector<Part> parts = partsFor(film.window(), isSplatting);
     std::vector<SplatList> lists;
     if (estimator.hasCameraLight()) film.expectCameraLight();
-    if (lightPaths > 0) {
-        film.expectSplats(lightPaths * pixelsOf(parts));
-        lists.resize(listCount(settings.threads, lightPaths), SplatList(film.window(), filter));
-    }
+    if (camerasSplat) film.expectCameraSplats();
+    if (lightPaths > 0) film.expectSplats(lightPaths * pixelsOf(parts));
+    if (isSplatting)
+        lists.resize(listCount(settings.threads, std::max<std::uint64_t>(lightPaths, 1)),
+                     SplatList(film.window(), filter));
     const double pixels = static_cast<double>(film.pixelCount());
     const std::uint64_t badBefore = film.badSamples(), refusedBefore = scene.refusedRays();
     Recorder recorder{view,          estimator,       film, settings.techniqueImages,

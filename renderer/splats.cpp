@@ -34,7 +34,6 @@ public:
     // Not inlined, lest its variables leave the registers.
     [[gnu::noinline]] void add(const SplatList::Splat& splat) {
         const Reach columns = columnsOf(splat), rows = rowsOf(splat);
-        const float paths = splat.t == 1 ? 1.0f : film_.lightPathsPerSample();
         columnDensities_.clear();
         for (int x = columns.first; x <= columns.last; ++x)
             columnDensities_.push_back(
@@ -46,8 +45,10 @@ public:
                 const auto share = static_cast<float>(
                     columnDensities_[static_cast<std::size_t>(x - columns.first)] * rowDensity);
                 if (share == 0.0f) continue;
-                if (splat.t <= 1)
-                    film_.addSplat(x, y, splat.value * (splat.weight * share * paths));
+                if (splat.t == 1)
+                    film_.addSplat(x, y, splat.value * (splat.weight * share));
+                else if (splat.t == 0)
+                    film_.addCameraSplat(x, y, splat.value * (splat.weight * share));
                 if (images_ && splat.t >= 1)
                     images_->add(x, y, {splat.s, splat.t}, splat.value * share, splat.weight);
             }
@@ -58,7 +59,7 @@ public:
     [[gnu::always_inline]] void expect(const SplatList::Splat& splat) const {
         const Reach columns = columnsOf(splat), rows = rowsOf(splat);
         for (int y = rows.first; y <= rows.last; ++y)
-            film_.expectSplat(columns.first, columns.last, y);
+            film_.expectSplat(columns.first, columns.last, y, splat.t == 1);
     }
 
 private:

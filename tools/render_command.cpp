@@ -43,17 +43,21 @@ bool isAskedFor(const RenderCommand& command, const char* layer) {
     return std::ranges::find(command.layers, layer) != command.layers.end();
 }
 
-/// Light paths fall all over the picture, and of what they bring to a pixel in a sample the
-/// luminance alone is recorded.
-bool hasVarianceOfColors(const std::string& kind) { return kind == "pt"; }
+/// Light paths fall all over the picture, and so do wavelengths that a lens parts; of what they
+/// bring to a pixel in a sample the luminance alone is recorded.
+bool hasVarianceOfColors(const LoadedScene& loaded) {
+    const bool isParted =
+        loaded.film.color == FilmColor::xyz && loaded.camera->settings().isDispersive;
+    return loaded.estimator.kind == "pt" && !isParted;
+}
 
-FilmLayers layersFor(const RenderCommand& command, const std::string& kind) {
+FilmLayers layersFor(const RenderCommand& command, const LoadedScene& loaded) {
     FilmLayers layers;
     layers.albedo = isAskedFor(command, "albedo");
     layers.normal = isAskedFor(command, "normal");
     layers.depth = isAskedFor(command, "depth");
     layers.position = isAskedFor(command, "position");
-    layers.variance = isAskedFor(command, "variance") && hasVarianceOfColors(kind);
+    layers.variance = isAskedFor(command, "variance") && hasVarianceOfColors(loaded);
     layers.luminanceVariance = true;  // of whole pictures: --error, part files
     return layers;
 }
@@ -133,7 +137,7 @@ LoadOptions loadOptions(const RenderCommand& command, int threads) {
 std::vector<ExrChannels> channelsFor(const RenderCommand& command, const LoadedScene& loaded,
                                      const Film& film) {
     std::vector<ExrChannels> channels = film.channels();
-    if (!isAskedFor(command, "variance") || hasVarianceOfColors(loaded.estimator.kind))
+    if (!isAskedFor(command, "variance") || hasVarianceOfColors(loaded))
         std::erase_if(channels,
                       [](const ExrChannels& c) { return c.names.front() == "variance.Y"; });
     return channels;
@@ -313,8 +317,7 @@ ExitCode runRender(const RenderCommand& command) {
     const int threads = command.threads.value_or(hardwareThreads());
     const LoadedScene loaded = loadFor(command, threads);
     checkCombinations(command, loaded.estimator.kind);
-    Film film(windowFor(command, loaded.film), layersFor(command, loaded.estimator.kind),
-              loaded.film.color);
+    Film film(windowFor(command, loaded.film), layersFor(command, loaded), loaded.film.color);
     const SampleRange wanted = wantedSamples(command, loaded);
     PartKeeper keeper(partFile, partInfoFor(command, loaded, film), wanted.begin,
                       command.checkpointSeconds);

@@ -25,9 +25,9 @@ RefocusedLens::Moved RefocusedLens::moved(const Eigen::Vector2d& reference, Aper
             Eigen::Matrix2d::Identity() - shiftMm_ * bySensor};
 }
 
-std::optional<Eigen::Vector2d> RefocusedLens::referenceOf(SensorPoint sensor,
-                                                          AperturePoint aperture,
-                                                          double wavelengthNm) const {
+std::optional<RefocusedLens::Reference> RefocusedLens::referenceOf(SensorPoint sensor,
+                                                                   AperturePoint aperture,
+                                                                   double wavelengthNm) const {
     // Newton's method. The slope is all but linear in the point: two or three steps.
     Eigen::Vector2d reference = sensor.mm;
     Moved at = moved(reference, aperture, wavelengthNm);
@@ -38,7 +38,7 @@ std::optional<Eigen::Vector2d> RefocusedLens::referenceOf(SensorPoint sensor,
         reference -= at.byReference.inverse() * (at.mm - sensor.mm);
         at = moved(reference, aperture, wavelengthNm);
     }
-    return reference;
+    return Reference{{reference}, at};
 }
 
 std::optional<ExitRay> RefocusedLens::byMovedSensor(ExitRay ray, const Moved& at) {
@@ -55,9 +55,9 @@ std::optional<ExitRay> RefocusedLens::trace(SensorPoint sensor, AperturePoint ap
                                             double wavelengthNm) const {
     const auto reference = referenceOf(sensor, aperture, wavelengthNm);
     if (!reference) return {};
-    const std::optional<ExitRay> ray = lens_.trace({*reference}, aperture, wavelengthNm);
+    const std::optional<ExitRay> ray = lens_.trace(reference->sensor, aperture, wavelengthNm);
     if (!ray) return {};
-    return byMovedSensor(*ray, moved(*reference, aperture, wavelengthNm));
+    return byMovedSensor(*ray, reference->moved);
 }
 
 void RefocusedLens::traceEach(SensorPoint sensor, AperturePoint aperture,
@@ -66,7 +66,7 @@ void RefocusedLens::traceEach(SensorPoint sensor, AperturePoint aperture,
     std::fill(origins.begin(), origins.end(), std::nullopt);
     const auto reference = referenceOf(sensor, aperture, wavelengthsNm.front());
     if (!reference) return;
-    lens_.traceEach({*reference}, aperture, wavelengthsNm, origins);
+    lens_.traceEach(reference->sensor, aperture, wavelengthsNm, origins);
     for (std::size_t i = 0; i < origins.size(); ++i) {
         if (!origins[i]) continue;
         RayOrigin& origin = *origins[i];
@@ -78,6 +78,7 @@ void RefocusedLens::traceEach(SensorPoint sensor, AperturePoint aperture,
         else
             origins[i].reset();
     }
+    if (!origins[0]) std::fill(origins.begin(), origins.end(), std::nullopt);
 }
 
 std::optional<SensorPoint> RefocusedLens::connect(const Eigen::Vector3d& targetMm,

@@ -37,9 +37,14 @@ private:
     };
     Moved moved(const Eigen::Vector2d& reference, AperturePoint aperture,
                 double wavelengthNm) const;
-    /// The point on the fit's own sensor from which the ray to `sensor` comes.
-    std::optional<Eigen::Vector2d> referenceOf(SensorPoint sensor, AperturePoint aperture,
-                                               double wavelengthNm) const;
+    /// A point on the fit's own sensor, and what it is on the moved one.
+    struct Reference {
+        SensorPoint sensor;
+        Moved moved;
+    };
+    /// That of the ray from `sensor`.
+    std::optional<Reference> referenceOf(SensorPoint sensor, AperturePoint aperture,
+                                         double wavelengthNm) const;
     /// From the derivatives by the fit's own sensor to those by the moved one. Empty where rays
     /// have crossed.
     static std::optional<ExitRay> byMovedSensor(ExitRay ray, const Moved& at);

@@ -59,6 +59,8 @@ void TracedLens::traceEach(SensorPoint sensor, AperturePoint aperture,
     for (std::size_t i = 0; i < wavelengthsNm.size(); ++i)
         if (isInRange(wavelengthsNm[i]))
             origins[i] = MonochromaticLens(*this, wavelengthsNm[i]).originOf(*hero);
+    // Traced back, a ray at a rim may be lost to rounding.
+    if (!origins[0]) std::fill(origins.begin(), origins.end(), std::nullopt);
 }
 
 std::optional<SensorPoint> TracedLens::connect(const Eigen::Vector3d& targetMm,

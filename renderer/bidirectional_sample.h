@@ -49,13 +49,15 @@ struct JoinDensities {
 };
 
 /// The weight of the path made of these vertices of a camera's walk and those of a light's, each
-/// from its beginning.
+/// from its beginning, if the lens can be connected to.
 PathWeight weightOf(BidirectionalSample& sample, std::span<const PathVertex> camera,
                     std::span<const PathVertex> light, const JoinDensities& join);
 
-/// Whether connecting what the camera's walk met first to the lens finds the film point where it
-/// began. If not, no technique with t = 1 makes its paths.
-bool isReachable(const View& view, const CameraSample& start, const CameraSubpath& path);
+/// In which lanes connecting what the camera's walk met first to the lens finds the film point
+/// where it began. In others no technique with t = 1 makes its paths. Of the first lane alone
+/// unless the lens parts them.
+using LaneFlags = std::array<bool, Spectrum::lanes>;
+LaneFlags reachableLanes(const View& view, const CameraSample& start, const CameraSubpath& path);
 
 /// fromCamera of light vertex s − 2, seen from `y`, its successor. No ray meets a Dirac light.
 float lightOriginDensity(const LightSubpath& light, std::size_t s, const PathVertex& y,

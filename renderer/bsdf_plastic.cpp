@@ -12,6 +12,13 @@ namespace etendue {
 
 namespace {
 
+struct BaseAlbedo {
+    Spectrum lanes;
+    /// Of the RGB: what lobes are drawn by is then the same whichever wavelength is the hero, so
+    /// that samples of several heroes can be weighed against each other.
+    float brightness;
+};
+
 /// The base, seen through a coat that lets T(μ) of the light at cosine μ in. What it sends out is
 ///
 ///     f = T(μo) T(μi) / (π Tavg) · ρ (1 − Fi) / (1 − ρ Fi),      1 − Fi = Tavg / ior²,
@@ -29,9 +36,14 @@ public:
           leaving_(std::min(1.0f, averageTransmittance / (ior * ior))) {}
 
     /// Of the light that got in, the share that comes out.
-    Spectrum albedo(const BsdfContext& context) const {
-        const Spectrum rho = context.wavelengths.lanesOf(reflectance_.color(context.uv));
-        return rho * leaving_ / (Spectrum(1.0f) - rho * (1.0f - leaving_));
+    BaseAlbedo albedo(const BsdfContext& context) const {
+        const auto albedoOf = [&](const Spectrum& rho) {
+            return rho * leaving_ / (Spectrum(1.0f) - rho * (1.0f - leaving_));
+        };
+        const Spectrum color = reflectance_.color(context.uv), rgb = albedoOf(color);
+        const Spectrum lanes =
+            context.wavelengths.isSpectral ? albedoOf(context.wavelengths.lanesOf(color)) : rgb;
+        return {lanes, brightness(rgb)};
     }
     Spectrum f(const Spectrum& albedo, float transmittanceO, float transmittanceI) const {
         return albedo * (transmittanceO * transmittanceI * inverseAverage_ * inversePi);
@@ -43,8 +55,8 @@ private:
 };
 
 /// Probability of drawing from the coat rather than from the base: their shares of the light.
-float coatProbability(float transmittance, const Spectrum& baseAlbedo) {
-    const float coat = 1.0f - transmittance, base = transmittance * brightness(baseAlbedo);
+float coatProbability(float transmittance, const BaseAlbedo& baseAlbedo) {
+    const float coat = 1.0f - transmittance, base = transmittance * baseAlbedo.brightness;
     return coat > 0.0f ? coat / (coat + base) : 0.0f;
 }
 
@@ -61,8 +73,8 @@ public:
         if (isInSurface(wo) || isInSurface(wi) || (wo.z > 0.0f) != (wi.z > 0.0f)) return {};
         const float cosO = std::abs(wo.z), cosI = std::abs(wi.z);
         const float throughO = transmittance(cosO), throughI = transmittance(cosI);
-        const Spectrum albedo = base_.albedo(context);
-        return {base_.f(albedo, throughO, throughI),
+        const BaseAlbedo albedo = base_.albedo(context);
+        return {base_.f(albedo.lanes, throughO, throughI),
                 (1.0f - coatProbability(throughO, albedo)) * cosI * inversePi,
                 (1.0f - coatProbability(throughI, albedo)) * cosO * inversePi};
     }
@@ -83,7 +95,7 @@ public:
     bool isTransmitting() const override { return false; }
     Spectrum albedo(const BsdfContext& context) const override {
         return Spectrum(1.0f - averageTransmittance_) +
-               base_.albedo(context) * averageTransmittance_;
+               base_.albedo(context).lanes * averageTransmittance_;
     }
 
 private:
@@ -110,11 +122,11 @@ public:
         }
         if (isInSurface(wo) || isInSurface(wi) || wi.z < 0.0f) return {};
         const float throughO = transmittance_.at(wo.z), throughI = transmittance_.at(wi.z);
-        const Spectrum albedo = base_.albedo(context);
+        const BaseAlbedo albedo = base_.albedo(context);
         const float coatO = coatProbability(throughO, albedo);
         const float coatI = coatProbability(throughI, albedo);
-        BsdfValue value{base_.f(albedo, throughO, throughI), (1.0f - coatO) * wi.z * inversePi,
-                        (1.0f - coatI) * wo.z * inversePi};
+        BsdfValue value{base_.f(albedo.lanes, throughO, throughI),
+                        (1.0f - coatO) * wi.z * inversePi, (1.0f - coatI) * wo.z * inversePi};
         if (const auto facet = reflectingMicrofacet(wo, wi)) {
             const float density = ggx_.density(facet->normal) * facet->transfer;
             const float reflected = fresnelDielectric(facet->cosineO, ior_).reflectance;
@@ -140,7 +152,7 @@ public:
     bool isTransmitting() const override { return false; }
     Spectrum albedo(const BsdfContext& context) const override {
         return Spectrum(1.0f - transmittance_.average()) +
-               base_.albedo(context) * transmittance_.average();
+               base_.albedo(context).lanes * transmittance_.average();
     }
 
 private:

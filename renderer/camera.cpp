@@ -114,11 +114,11 @@ CameraRayOrigins Camera::sampleRayOfEach(Vec2 film, Vec2 apertureUniform,
     CameraRayOrigins result;
     if (!origins[0]) return result;
     const CameraRay hero = worldRay(origins[0]->ray);
-    result[0] = {film, hero, origins[0]->etendue};
-    for (std::size_t lane = 1; lane < origins.size(); ++lane) {
-        if (!origins[lane]) continue;
-        CameraRayOrigin origin{filmPoint(origins[lane]->sensor.mm), worldRay(origins[lane]->ray),
-                               origins[lane]->etendue};
+    for (std::size_t lane = 0; lane < origins.size(); ++lane) {
+        if (!origins[lane] || !(origins[lane]->etendue > 0.0)) continue;
+        CameraRayOrigin origin{lane == 0 ? film : filmPoint(origins[lane]->sensor.mm),
+                               worldRay(origins[lane]->ray), origins[lane]->etendue,
+                               origins[lane]->aperture};
         // But for the search's tolerance it is the same ray.
         origin.ray.origin = hero.origin;
         origin.ray.direction = hero.direction;
@@ -175,14 +175,31 @@ void Camera::connectTo(const Target& target, Vec2 apertureUniform, const Wavelen
             connections[lane] = connectAtOuterPupil(target, apertureUniform, nm[lane]);
         return;
     }
+    connectThrough(lens_->sampleAperture(toEigen(apertureUniform)), target,
+                   std::span(nm).first(connections.size()), connections);
+}
+
+void Camera::connectThrough(AperturePoint aperture, const Target& target,
+                            std::span<const double> nm,
+                            std::span<std::optional<CameraConnection>> connections) const {
     // The rays that sampleRay would make, so that both directions share one weight and one
     // footprint.
     std::array<std::optional<Sighting>, Spectrum::lanes> sightings;
-    lens_->seeEach(target.mm, lens_->sampleAperture(toEigen(apertureUniform)),
-                   std::span(nm).first(connections.size()),
-                   std::span(sightings).first(connections.size()));
-    for (std::size_t lane = 0; lane < connections.size(); ++lane)
-        if (sightings[lane]) connections[lane] = connectionOf(*sightings[lane], target);
+    lens_->seeEach(target.mm, aperture, nm, std::span(sightings).first(nm.size()));
+    for (std::size_t i = 0; i < nm.size(); ++i)
+        if (sightings[i]) connections[i] = connectionOf(*sightings[i], target);
+}
+
+std::optional<CameraConnection> Camera::connectAgain(const CameraRayOrigin& origin, float distance,
+                                                     const Wavelengths& wavelengths,
+                                                     std::size_t lane) const {
+    const CameraRay& ray = origin.ray;
+    const Target target = std::isinf(distance) ? targetToward(ray.direction)
+                                               : targetAt(ray.origin + ray.direction * distance);
+    const double nm = wavelengthNm(wavelengths, lane);
+    std::optional<CameraConnection> connection;
+    connectThrough(origin.aperture, target, {&nm, 1}, {&connection, 1});
+    return connection;
 }
 
 std::optional<CameraConnection> Camera::connectionOf(const Sighting& sighting,

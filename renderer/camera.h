@@ -32,7 +32,8 @@ struct CameraRay {
 struct CameraRayOrigin {
     Vec2 film;       // pixels, from the top left of the full frame; may lie outside it
     CameraRay ray;   // with weight and footprint of that wavelength
-    double etendue;  // of the rays that leave, per area of sensor and aperture, 1/mm²
+    double etendue;  // of the rays that leave, per area of sensor and aperture, 1/mm²; positive
+    AperturePoint aperture;
 };
 
 /// At the wavelength of each lane, of one ray.
@@ -101,6 +102,12 @@ public:
     CameraConnections connectEachToInfinity(Vec3 direction, Vec2 apertureUniform,
                                             const Wavelengths& wavelengths) const;
 
+    /// What connecting makes, through the aperture point of `origin` and at that lane's wavelength,
+    /// of what its ray meets at `distance`, m, which may be infinite.
+    std::optional<CameraConnection> connectAgain(const CameraRayOrigin& origin, float distance,
+                                                 const Wavelengths& wavelengths,
+                                                 std::size_t lane) const;
+
     /// Whether all rays leave the lens behind the plane through `point`, which faces `normal`
     /// (unit).
     bool isBehind(Vec3 point, Vec3 normal) const;
@@ -119,6 +126,9 @@ private:
     /// At the first wavelengths, as many as there are `connections`.
     void connectTo(const Target& target, Vec2 apertureUniform, const Wavelengths& wavelengths,
                    std::span<std::optional<CameraConnection>> connections) const;
+    /// At as many wavelengths as there are `connections`.
+    void connectThrough(AperturePoint aperture, const Target& target, std::span<const double> nm,
+                        std::span<std::optional<CameraConnection>> connections) const;
     std::optional<CameraConnection> connectionOf(const Sighting& sighting,
                                                  const Target& target) const;
     std::optional<CameraConnection> connectAtOuterPupil(const Target& target, Vec2 uniform,

@@ -37,8 +37,9 @@ RandomStream pixelRandom(const View& view, SampleId id, RandomDomain domain) {
 /// but near the frame's edge and for filters that do not sum to one everywhere.
 double samplesAt(const View& view, Vec2 film) {
     const CameraSettings& frame = view.camera.settings();
+    const float radius = view.filter.radius();
     const auto along = [&](float at, int pixels) {
-        const float radius = view.filter.radius();
+        if (!(at > -radius && at < static_cast<float>(pixels) + radius)) return 0.0;
         const auto first = static_cast<int>(std::floor(std::max(at - radius - 0.5f, 0.0f)));
         double sum = 0.0;
         for (int i = first; i < pixels && static_cast<float>(i) <= at + radius; ++i)
@@ -54,7 +55,7 @@ double samplesAt(const View& view, Vec2 film) {
 /// lens' map is the path's first vertex). A lane's own samples are drawn pixel by pixel, by the
 /// very filter that weighs them: of those the density is one.
 void shareAmongLanes(const View& view, CameraSample& sample) {
-    const CameraRayOrigins& origins = *sample.origins;
+    CameraRayOrigins& origins = *sample.origins;
     std::array<double, Spectrum::lanes> density{}, own{};
     double sum = 0.0;
     for (std::size_t lane = 0; lane < origins.size(); ++lane) {
@@ -62,6 +63,7 @@ void shareAmongLanes(const View& view, CameraSample& sample) {
         own[lane] = 1.0 / origins[lane]->etendue;
         density[lane] = samplesAt(view, origins[lane]->film) * own[lane];
         sum += density[lane];
+        if (lane > 0 && density[lane] == 0.0) origins[lane].reset();  // no pixel would see it
     }
     sample.throughput = Spectrum::fromLanes([&](int i) {
         const auto lane = static_cast<std::size_t>(i);

@@ -77,7 +77,7 @@ private:
         const Spectrum value = y.throughput * scattering.value *
                                importance(connection.ray, connection.distance, toLens);
         splat(s, lane, connection.film, value,
-              weightOf(sample_, lens(), sample_.lightVertices(s), join).weight);
+              weightOf(sample_, lens(), sample_.lightVertices(s), join).value());
     }
 
     /// s = 1, t = 1: the light itself through the lens.
@@ -96,7 +96,7 @@ private:
         const Spectrum value =
             emitted * (importance(ray, connection.distance, normal) / y.density.fromLight);
         splat(1, lane, connection.film, value,
-              weightOf(sample_, lens(), sample_.lightVertices(1), join).weight);
+              weightOf(sample_, lens(), sample_.lightVertices(1), join).value());
     }
 
     void addInfinity(std::size_t lane, const CameraConnection& connection) {
@@ -108,7 +108,7 @@ private:
         const Spectrum value =
             light_.radiance * (ray.weight * pdfSolidAngle(ray) / y.density.fromLight);
         splat(1, lane, connection.film, value,
-              weightOf(sample_, lens(), sample_.lightVertices(1), join).weight);
+              weightOf(sample_, lens(), sample_.lightVertices(1), join).value());
     }
 
     /// W/sr, from the irradiance of a light that is a point.

@@ -110,29 +110,28 @@ PathWeight balanceWeight(std::span<const VertexDensity> path, Technique techniqu
     const double own = counts(technique);
     // Densities of the other techniques over that of this one, each times its count: from one
     // technique to its neighbour one vertex changes hands.
-    double sum = own, byLens = technique.t == 1 ? own : 0.0;
+    const bool isByLens = technique.t == 1;
+    PathWeight weight{own, isByLens ? own : 0.0, isByLens ? 0.0 : own};
     const auto add = [&](int t, double ratio) {
         const Technique other{edges + 1 - t, t};
         if (!(ratio > 0.0 && isPossible(path, other))) return;
-        const double density = counts(other) * ratio;
-        sum += density;
-        if (t == 1) byLens = density;
+        (t == 1 ? weight.byLens : weight.byOthers) += counts(other) * ratio;
     };
     double ratio = 1.0;
     for (int i = technique.t; i <= edges && ratio > 0.0; ++i) {
         const VertexDensity& v = path[static_cast<std::size_t>(i)];
         ratio *= static_cast<double>(v.fromCamera) / static_cast<double>(v.fromLight);
-        if (std::isinf(ratio)) return {0.0f, 0.0f};
+        if (std::isinf(ratio)) return {};
         add(i + 1, ratio);
     }
     ratio = 1.0;
     for (int i = technique.t - 1; i >= 1 && ratio > 0.0; --i) {
         const VertexDensity& v = path[static_cast<std::size_t>(i)];
         ratio *= static_cast<double>(v.fromLight) / static_cast<double>(v.fromCamera);
-        if (std::isinf(ratio)) return {0.0f, 0.0f};
+        if (std::isinf(ratio)) return {};
         add(i, ratio);
     }
-    return {static_cast<float>(own / sum), static_cast<float>(byLens / sum)};
+    return weight;
 }
 
 }  // namespace etendue

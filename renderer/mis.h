@@ -99,9 +99,16 @@ struct SampleCounts {
     }
 };
 
+/// A quotient of densities, each times its technique's count and over the density of the technique
+/// itself.
 struct PathWeight {
-    float weight;
-    float byLens;  // what the techniques with t = 1 have of the sum of all densities
+    double own = 0.0, byLens = 0.0;  // of the technique, and of those with t = 1
+    double byOthers = 1.0;           // of all but t = 1
+
+    /// Where those with t = 1 are denser by `lensFactor`; 0: they cannot make the path.
+    float value(double lensFactor = 1.0) const {
+        return static_cast<float>(own / (byLens > 0.0 ? byOthers + lensFactor * byLens : byOthers));
+    }
 };
 
 /// The balance heuristic (Veach 1997, §10.2) for a path sampled by `technique`. `path`[0] is the

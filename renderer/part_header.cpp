@@ -14,7 +14,7 @@ namespace etendue {
 
 namespace {
 
-constexpr int version = 3;
+constexpr int version = 4;
 constexpr double mostCount = 0x1p62;
 
 struct LayerName {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include "renderer/bidirectional_sample.h"
 
@@ -13,7 +14,7 @@ PathWeight weightOf(BidirectionalSample& sample, std::span<const PathVertex> cam
     const std::size_t t = camera.size(), s = light.size();
     // Both ends take part with their continuous lobes, whatever the walks did there.
     path[t - 1].fromLight = join.cameraEnd;
-    if (t >= 2) path[t - 1].isConnectable = true;
+    path[0].isConnectable = path[t - 1].isConnectable = true;
     if (t >= 3) path[t - 2].fromLight = join.beforeCameraEnd;
     if (s >= 1) {
         path[t].fromCamera = join.lightEnd;
@@ -26,22 +27,34 @@ PathWeight weightOf(BidirectionalSample& sample, std::span<const PathVertex> cam
                          {sample.techniques, lightPaths});
 }
 
-bool isReachable(const View& view, const CameraSample& start, const CameraSubpath& path) {
+LaneFlags reachableLanes(const View& view, const CameraSample& start, const CameraSubpath& path) {
+    LaneFlags isReachable{};
+    const bool isEscape = path.vertices.size() < 2;
+    if (isEscape && !path.escape) return isReachable;
+    // A mirror that shines is connected as a light.
+    if (!isEscape && !canConnect(path.vertices[1]) && path.vertices[1].point.light < 0)
+        return isReachable;
     // Far below the distance of two roots, far above the rounding of the vertex.
     constexpr float tolerance = 0.1f;  // pixels
+    const auto isNear = [&](const std::optional<CameraConnection>& connection, Vec2 film) {
+        return connection && std::abs(connection->film.x - film.x) < tolerance &&
+               std::abs(connection->film.y - film.y) < tolerance;
+    };
+    const Camera& camera = view.camera;
     const Wavelengths& wavelengths = start.color.wavelengths;
-    std::optional<CameraConnection> connection;
-    if (path.vertices.size() >= 2) {
-        const PathVertex& first = path.vertices[1];
-        // A mirror that shines is connected as a light.
-        if (!canConnect(first) && first.point.light < 0) return false;
-        connection = view.camera.connect(first.point.position, start.apertureUniform, wavelengths);
-    } else if (path.escape) {
-        connection = view.camera.connectToInfinity(path.escape->direction, start.apertureUniform,
-                                                   wavelengths);
-    }
-    return connection && std::abs(connection->film.x - start.film.x) < tolerance &&
-           std::abs(connection->film.y - start.film.y) < tolerance;
+    isReachable[0] = isNear(
+        isEscape
+            ? camera.connectToInfinity(path.escape->direction, start.apertureUniform, wavelengths)
+            : camera.connect(path.vertices[1].point.position, start.apertureUniform, wavelengths),
+        start.film);
+    if (!start.origins) return isReachable;
+    const float distance = isEscape ? std::numeric_limits<float>::infinity()
+                                    : length(path.vertices[1].point.position - start.ray->origin);
+    for (std::size_t lane = 1; lane < isReachable.size(); ++lane)
+        if (const auto& origin = (*start.origins)[lane])
+            isReachable[lane] =
+                isNear(camera.connectAgain(*origin, distance, wavelengths, lane), origin->film);
+    return isReachable;
 }
 
 float lightOriginDensity(const LightSubpath& light, std::size_t s, const PathVertex& y,

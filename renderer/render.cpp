@@ -1,13 +1,12 @@
 #include "renderer/render.h"
 
 #include <algorithm>
-#include <array>
-#include <cassert>
 #include <chrono>
 #include <mutex>
 #include <span>
 #include <stdexcept>
 
+#include "renderer/lane_sums.h"
 #include "renderer/parallel.h"
 #include "renderer/splats.h"
 
@@ -50,8 +49,8 @@ std::vector<Part> partsOf(const FrameWindow& window) {
     return parts;
 }
 
-/// Light paths may fall anywhere, so those of the whole frame are traced for a window of it: a crop
-/// is that part of the full picture, to the bit.
+/// Light paths may fall anywhere, and so may wavelengths that a lens parts, so those of the whole
+/// frame are traced for a window of it: a crop is that part of the full picture, to the bit.
 std::vector<Part> partsFor(const FrameWindow& window, bool isSplatting) {
     if (!isSplatting) return partsOf(window);
     return partsOf(
@@ -71,25 +70,6 @@ void keepFirst(std::vector<BadSample>& bad) {
     });
     bad.resize(std::min(bad.size(), badSamplesKept));
 }
-
-/// What all techniques of one camera path splat: each of its wavelengths lands in one place.
-class LaneSums {
-public:
-    void add(const Contribution& c) {
-        std::size_t lane = 0;
-        while (lane < count_ && !(sums_[lane].film == c.film)) ++lane;
-        if (lane == count_) {
-            assert(count_ < sums_.size());
-            sums_[count_++] = {.technique = {}, .value = {}, .film = c.film, .isSplat = true};
-        }
-        sums_[lane].value += c.value * c.weight;
-    }
-    std::span<const Contribution> sums() const { return std::span(sums_).first(count_); }
-
-private:
-    std::array<Contribution, Spectrum::lanes> sums_;
-    std::size_t count_ = 0;
-};
 
 /// Everything a thread needs to take samples.
 struct Recorder {
@@ -123,6 +103,7 @@ struct Recorder {
         Spectrum sum;
         LaneSums lanes;
         for (const Contribution& c : sample.contributions) {
+            if (!isOwn && !c.isSplat) continue;
             if (!isUsable(c.value * c.weight)) {
                 film.countBad();
                 rememberBad({x, y, index, c.technique});
@@ -131,10 +112,10 @@ struct Recorder {
             if (c.isSplat) {
                 if (c.technique.t != 1) lanes.add(c);
                 // Of a camera path one technique's share, without the others', is for the images.
-                if (splats && (c.technique.t == 1 || images)) splats->add(c);
+                if (splats && (c.technique.t == 1 || (images && c.technique.t >= 2)))
+                    splats->add(c);
                 continue;
             }
-            if (!isOwn) continue;
             sum += c.value * c.weight;
             if (images) images->add(x, y, c.technique, c.value, c.weight);
         }

@@ -18,8 +18,10 @@ public:
           start_(start),
           camera_(sample.memory.camera),
           light_(sample.memory.light) {
-        camera_.vertices.front().density.isConnectable = isReachable(view_, start_, camera_);
-        if (start_.origins) findDensities();
+        const LaneFlags isReachable = reachableLanes(view_, start_, camera_);
+        camera_.vertices.front().density.isConnectable = isReachable[0];
+        for (std::size_t lane = 0; lane < isReachable.size(); ++lane)
+            if (isReachable[lane]) lensFactors_[lane] = lensFactor(lane);
     }
 
     void makeAll() {
@@ -34,31 +36,19 @@ public:
     }
 
 private:
-    /// How much denser the hero's samples are at the first vertex than each lane's, where the ray
-    /// comes from at its wavelength.
-    void findDensities() {
+    /// How much denser techniques with t = 1 are, against those from the lens, in a lane than in
+    /// the hero's: as camera samples are less dense, where the ray comes from at its wavelength.
+    double lensFactor(std::size_t lane) const {
+        if (lane == 0) return 1.0;
         const bool isEscape = camera_.vertices.size() < 2;
-        if (isEscape && !camera_.escape) return;
-        const CameraRay& ray = *start_.ray;
-        const float distance =
-            isEscape ? 0.0f : length(camera_.vertices[1].point.position - ray.origin);
-        const auto density = [&](const CameraRay& from) {
-            return isEscape ? pdfSolidAngle(from) : pdfArea(from, distance, from.direction);
+        const CameraRay &hero = *start_.ray, &ray = (*start_.origins)[lane]->ray;
+        const auto density = [&](const CameraRay& from) -> double {
+            return isEscape
+                       ? pdfSolidAngle(from)
+                       : pdfArea(from, length(camera_.vertices[1].point.position - from.origin),
+                                 from.direction);
         };
-        for (std::size_t lane = 1; lane < Spectrum::lanes; ++lane)
-            if (const auto& origin = (*start_.origins)[lane])
-                overLane_[lane] = density(ray) / density(origin->ray);
-    }
-
-    /// The hero's weight, and those of the other lanes, which are as likely to be found by all
-    /// techniques but from the lens.
-    LaneWeights laneWeights(const PathWeight& hero) const {
-        LaneWeights weights;
-        for (std::size_t lane = 0; lane < weights.size(); ++lane)
-            weights[lane] = hero.byLens > 0.0f
-                                ? hero.weight / (1.0f + hero.byLens * (overLane_[lane] - 1.0f))
-                                : hero.weight;
-        return weights;
+        return density(hero) / density(ray);
     }
 
     /// s = 0: the camera's walk met an area light.
@@ -175,7 +165,10 @@ private:
     }
 
     void add(std::size_t s, std::size_t t, const Spectrum& value, const PathWeight& weight) {
-        contribute(start_, {static_cast<int>(s), static_cast<int>(t)}, value, laneWeights(weight),
+        LaneWeights weights;
+        for (std::size_t lane = 0; lane < weights.size(); ++lane)
+            weights[lane] = weight.value(lensFactors_[lane]);
+        contribute(start_, {static_cast<int>(s), static_cast<int>(t)}, value, weights,
                    sample_.result.contributions);
     }
 
@@ -185,7 +178,7 @@ private:
     CameraSample& start_;
     CameraSubpath& camera_;
     const LightSubpath& light_;
-    LaneWeights overLane_{1.0f, 1.0f, 1.0f, 1.0f};
+    std::array<double, Spectrum::lanes> lensFactors_{};  // of PathWeight; 0 where unreachable
 };
 
 }  // namespace

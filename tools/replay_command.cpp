@@ -92,6 +92,16 @@ std::optional<FirstDensity> firstDensityOf(const SamplePath& path) {
     return {};
 }
 
+/// Where the other wavelengths of the ray come from.
+std::string originsText(const CameraSample& sample) {
+    std::string result;
+    for (std::size_t lane = 1; lane < sample.origins->size(); ++lane)
+        if (const auto& origin = (*sample.origins)[lane])
+            result += fmt::format("{}{} px at {:.5g} nm", result.empty() ? "" : ", ",
+                                  text(origin->film), sample.color.wavelengths.nm[lane]);
+    return result.empty() ? "nowhere on the film" : result;
+}
+
 std::string cameraText(const SamplePath& path) {
     if (!path.camera) return "";
     const CameraSample& sample = *path.camera;
@@ -103,6 +113,7 @@ std::string cameraText(const SamplePath& path) {
         rows.push_back({"toward", text(sample.ray->direction)});
         rows.push_back(
             {"weight", fmt::format("{:.5g}, pixel value per radiance", sample.ray->weight)});
+        if (sample.origins) rows.push_back({"it comes from", originsText(sample)});
     } else {
         rows.push_back({"ray", "none: the lens blocks it"});
     }
@@ -157,17 +168,18 @@ std::string contributionsText(const SamplePath& path, bool isSpectral) {
     std::vector<std::vector<std::string>> rows{{"technique",
                                                 isSpectral ? "value, XYZ" : "value, RGB", "weight",
                                                 "weighted", "lands on", ""}};
-    Spectrum splatted;
+    bool isSplatting = !path.lightPaths.empty();
     for (const Contribution& c : path.contributions) {
         const Spectrum weighted = c.value * c.weight;
-        if (c.isSplat) splatted += weighted;
+        isSplatting |= c.isSplat;
         rows.push_back(
             {nameOf(c.technique), text(c.value), fmt::format("{:.5g}", c.weight), text(weighted),
              c.isSplat ? fmt::format("{} px", text(c.film)) : "its own pixel", defectOf(weighted)});
     }
     rows.push_back({"sum", "", "", text(path.ownPixel), "its own pixel", defectOf(path.ownPixel)});
-    if (!path.lightPaths.empty())
-        rows.push_back({"sum", "", "", text(splatted), "where they land", defectOf(splatted)});
+    if (isSplatting)
+        rows.push_back(
+            {"sum", "", "", text(path.splatted), "where they land", defectOf(path.splatted)});
     return "\ncontributions\n" + alignedTable(rows, "llrlll");
 }
 

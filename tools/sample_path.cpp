@@ -227,7 +227,7 @@ void retraceSample(const View& view, const Estimator& estimator, const Estimator
 void markReachability(const View& view, SamplePath& path) {
     if (!path.cameraPath.vertices.empty())
         path.cameraPath.vertices.front().density.isConnectable =
-            isReachable(view, *path.camera, path.cameraPath);
+            reachableLanes(view, *path.camera, path.cameraPath).front();
 }
 
 }  // namespace etendue

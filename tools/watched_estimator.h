@@ -6,6 +6,7 @@
 
 #include "renderer/estimator.h"
 #include "renderer/film.h"
+#include "renderer/lane_sums.h"
 #include "renderer/scene_loader.h"
 
 namespace etendue {
@@ -25,6 +26,7 @@ public:
                     Sample& result) const override {
         estimator_.takeSample(view, id, request, result);
         Spectrum own;
+        LaneSums lanes;
         for (const Contribution& c : result.contributions) {
             const Spectrum value = c.value * c.weight;
             if (!isUsable(value)) continue;
@@ -32,10 +34,11 @@ public:
             if (c.technique.t == 1)
                 note(value * (1.0f / framePixels_));
             else if (c.isSplat)
-                note(value);
+                lanes.add(c);
             else
                 own += value;
         }
+        for (const Contribution& lane : lanes.sums()) note(lane.value);
         note(own);
     }
 

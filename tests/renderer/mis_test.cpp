@@ -61,7 +61,7 @@ TEST_CASE("MIS: weights match the product of all densities, and those of all tec
             for (int t = 1; t <= edges + 1; ++t) {
                 const long double own = densities[static_cast<std::size_t>(t - 1)];
                 if (own == 0.0L) continue;  // never drawn
-                const float weight = balanceWeight(path, {edges + 1 - t, t}, counts).weight;
+                const float weight = balanceWeight(path, {edges + 1 - t, t}, counts).value();
                 sum += static_cast<long double>(weight);
                 CHECK(weight == doctest::Approx(static_cast<double>(own / total)).epsilon(1e-5));
             }
@@ -76,9 +76,9 @@ TEST_CASE("MIS: a technique of infinite density takes the whole weight") {
     const std::vector<VertexDensity> path = {{0, 0, true}, {infinity, 2, true}, {3, 5, true}};
     const TechniqueSet all;
     const SampleCounts counts{all};
-    CHECK(balanceWeight(path, {2, 1}, counts).weight == 0.0f);
+    CHECK(balanceWeight(path, {2, 1}, counts).value() == 0.0f);
     const float sum =
-        balanceWeight(path, {1, 2}, counts).weight + balanceWeight(path, {0, 3}, counts).weight;
+        balanceWeight(path, {1, 2}, counts).value() + balanceWeight(path, {0, 3}, counts).value();
     CHECK(sum == doctest::Approx(1.0));
 }
 

@@ -80,7 +80,9 @@ LoadedScene partedScene(const std::vector<std::string>& overrides) {
     scene.replace(scene.find(thinLens), thinLens.size(),
                   "lens = \"" + lens.string() + "\"\nterms = 8\ndegree = 5\n");
     scene.erase(scene.find(opening), opening.size());
-    return sceneFromText(scene, overrides);
+    LoadedScene loaded = sceneFromText(scene, overrides);
+    REQUIRE(loaded.camera->settings().isDispersive);
+    return loaded;
 }
 
 struct Parted {

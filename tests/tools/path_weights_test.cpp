@@ -153,7 +153,7 @@ Weights weightsOf(const Path& path, const SampleCounts& counts) {
         logs.push_back(log);
         most = std::max(most, log);
         if (technique == path.technique) own = log;
-        weights.sum += balanceWeight(densities, technique, counts).weight;
+        weights.sum += balanceWeight(densities, technique, counts).value();
     }
     double all = 0.0;
     for (const double log : logs) all += std::exp(log - most);
@@ -213,13 +213,13 @@ private:
         }
     }
 
-    /// That of the wavelength whose light it is.
+    /// The wavelength whose light it is.
     template <class Lanes>
-    static const auto& landingOn(Vec2 film, const Lanes& lanes) {
+    static std::size_t laneOf(Vec2 film, const Lanes& lanes) {
         const auto lane = std::find_if(lanes.begin(), lanes.end(),
                                        [&](const auto& l) { return l && l->film == film; });
         REQUIRE(lane != lanes.end());
-        return **lane;
+        return static_cast<std::size_t>(lane - lanes.begin());
     }
 
     std::optional<Path> splatted(const Contribution& c) const {
@@ -232,7 +232,7 @@ private:
                 : view_.camera.connectEach(end.point.position, apertureUniforms_[s - 1],
                                            wavelengths_);
         Path path;
-        path.ray = landingOn(c.film, connections).ray;
+        path.ray = connections[laneOf(c.film, connections)]->ray;
         path.isLensConnectable = true;
         appendLight(path, s);
         path.light = light.light;
@@ -246,9 +246,10 @@ private:
         const auto s = static_cast<std::size_t>(technique.s);
         const CameraSubpath& camera = sample_.cameraPath;
         Path path;
-        path.ray = sample_.camera->origins ? landingOn(c.film, *sample_.camera->origins).ray
-                                           : *sample_.camera->ray;
-        path.isLensConnectable = camera.vertices.front().density.isConnectable;
+        const auto& origins = sample_.camera->origins;
+        const std::size_t lane = origins ? laneOf(c.film, *origins) : 0;
+        path.ray = origins ? (*origins)[lane]->ray : *sample_.camera->ray;
+        path.isLensConnectable = reachableLanes(view_, *sample_.camera, camera)[lane];
         path.technique = technique;
         const std::size_t own = std::min(t, camera.vertices.size());
         for (std::size_t i = 1; i < own; ++i) {

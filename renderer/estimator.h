@@ -73,8 +73,8 @@ struct Contribution {
 };
 
 struct SampleRequest {
-    bool ownPixel = true;  // the camera sample of the pixel itself; else only what may fall on
-                           // others
+    bool ownPixel = true;  // what the camera sample brings to the pixel itself; if not, only splats
+                           // count
     bool firstHit = false;
 };
 

@@ -76,7 +76,7 @@ void Film::addTo(std::size_t slot, Vec3 v) {
 void Film::expectSplats(std::uint64_t lightPathsPerSample) {
     samplesPerLightPath_ = 1.0 / static_cast<double>(lightPathsPerSample);
     state_.splatSums.resize(pixelCount());
-    if (layers_.luminanceVariance) state_.sampleLuminance.resize(pixelCount());
+    expectSampleLuminance();
 }
 
 void Film::countRounded() {

@@ -41,7 +41,7 @@ struct FilmFeatures {
 struct FilmState {
     // Pixel after pixel of the window, row by row.
     std::vector<ExactColor> cameraSums;  // empty when camera samples bring no light
-    std::vector<ExactColor> splatSums;   // empty when nothing is splatted
+    std::vector<ExactColor> splatSums;   // by light paths; empty when there are none
     ExactSums layerSums;                 // as many a pixel as the layers have
     std::uint64_t samples = 0;
     std::uint64_t lightPaths = 0;  // of the whole frame, not of the window alone
@@ -54,7 +54,7 @@ struct FilmState {
     /// where several such renders were merged. Empty as long as there was none.
     std::vector<std::uint16_t> extraSamples;
     /// The luminance that the unfinished sample has brought to each pixel; empty unless light is
-    /// splatted and its variance wanted.
+    /// splatted, by light paths or the camera's, and its variance wanted.
     std::vector<float> sampleLuminance;
 
     friend bool operator==(const FilmState&, const FilmState&) = default;
@@ -97,11 +97,7 @@ public:
     /// Adds light that a light path brought to pixel (x, y) of the window: the film holds the mean
     /// over all light paths. The value must be finite and not negative (isUsable).
     void addSplat(int x, int y, const Spectrum& value) {
-        const std::size_t pixel = pixelNumber(x, y);
-        if (!state_.splatSums[pixel].add(value[0], value[1], value[2])) countRounded();
-        if (!state_.sampleLuminance.empty())
-            state_.sampleLuminance[pixel] += static_cast<float>(
-                samplesPerLightPath_ * luminanceOf(Vec3d{value[0], value[1], value[2]}));
+        addSplatTo(state_.splatSums, pixelNumber(x, y), value, samplesPerLightPath_);
     }
     /// Has pixels first … last of a row brought near, for what a light path or a camera's will
     /// splat on them soon. To be inlined, since GCC drops calls to a function that does nothing but
@@ -115,17 +111,11 @@ public:
     }
     /// From now on camera samples bring light to other pixels than their own. To be called before
     /// addCameraSplat().
-    void expectCameraSplats() {
-        if (layers_.luminanceVariance) state_.sampleLuminance.resize(pixelCount());
-    }
+    void expectCameraSplats() { expectSampleLuminance(); }
     /// Adds light that a camera sample, of another pixel or of this one, brought to pixel (x, y).
     /// As for addSplat() it must be usable.
     void addCameraSplat(int x, int y, const Spectrum& value) {
-        const std::size_t pixel = pixelNumber(x, y);
-        if (!state_.cameraSums[pixel].add(value[0], value[1], value[2])) countRounded();
-        if (!state_.sampleLuminance.empty())
-            state_.sampleLuminance[pixel] +=
-                static_cast<float>(luminanceOf(Vec3d{value[0], value[1], value[2]}));
+        addSplatTo(state_.cameraSums, pixelNumber(x, y), value, 1.0);
     }
     void addLightPaths(std::uint64_t count) { state_.lightPaths += count; }
     bool countBad();
@@ -185,6 +175,17 @@ private:
         assert(y >= window_.y && y - window_.y < window_.height);
         return static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
                static_cast<std::size_t>(x - window_.x);
+    }
+    void expectSampleLuminance() {
+        if (layers_.luminanceVariance) state_.sampleLuminance.resize(pixelCount());
+    }
+    /// `samples`: of the pixel, to which the splat belongs: of a light path, a part of one.
+    void addSplatTo(std::vector<ExactColor>& sums, std::size_t pixel, const Spectrum& value,
+                    double samples) {
+        if (!sums[pixel].add(value[0], value[1], value[2])) countRounded();
+        if (!state_.sampleLuminance.empty())
+            state_.sampleLuminance[pixel] +=
+                static_cast<float>(samples * luminanceOf(Vec3d{value[0], value[1], value[2]}));
     }
     /// Each cache line of some memory, which is not empty.
     [[gnu::always_inline]] static void prefetch(const void* begin, const void* end) {

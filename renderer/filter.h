@@ -1,6 +1,6 @@
 // Filter: how a pixel weighs the film around its centre. Every filter here is positive, separable
 // and normalised exactly, so that it is drawn from (filter importance sampling, Ernst, Stamminger
-// and Greiner 2006) and each camera sample belongs to one pixel with weight 1.
+// and Greiner 2006) and each camera sample belongs to one pixel with weight 1. It weighs splats.
 #pragma once
 
 #include "renderer/vec.h"

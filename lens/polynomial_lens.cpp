@@ -37,9 +37,7 @@ std::optional<ExitRay> PolynomialLens::trace(SensorPoint sensor, AperturePoint a
     // Before any polynomial is asked, which outside the domain could answer anything.
     if (!domain_.contains(sensor, aperture, wavelengthNm)) return {};
     const std::optional<ExitRay> ray = map_.exitRay(sensor, aperture, wavelengthNm);
-    if (!ray || statusOf(sensor, *ray, aperture, wavelengthNm) != ConnectStatus::found ||
-        !passesRims(sensor, aperture, wavelengthNm))
-        return {};
+    if (!ray || !passes(sensor, *ray, aperture, wavelengthNm)) return {};
     return ray;
 }
 
@@ -76,9 +74,7 @@ std::optional<RayOrigin> PolynomialLens::originOf(const PupilRay& mapped, Sensor
                                                   double wavelengthNm) const {
     if (!aperture_.contains(aperture.mm)) return {};
     const std::optional<ExitRay> ray = map_.exitRay(mapped);
-    if (!ray || statusOf(sensor, *ray, aperture, wavelengthNm) != ConnectStatus::found ||
-        !passesRims(sensor, aperture, wavelengthNm))
-        return {};
+    if (!ray || !passes(sensor, *ray, aperture, wavelengthNm)) return {};
     return RayOrigin{sensor, aperture, *ray, map_.etendue(mapped)};
 }
 
@@ -89,11 +85,9 @@ std::optional<RayOrigin> PolynomialLens::originNear(Eigen::Vector4d at, const Le
                                leaving.pupil.directionX - there.directionX,
                                leaving.pupil.directionY - there.directionY);
     };
-    const auto isNearDomain = [&] {  // far beyond it powers overflow
-        constexpr double margin = 1.2;
-        return (at.head<2>().cwiseAbs().array() <= margin * domain_.sensorHalfSizeMm.array())
-                   .all() &&
-               at.tail<2>().norm() <= margin * domain_.apertureRadiusMm;
+    const auto isNearDomain = [&] {
+        return isNearSensor(at.head<2>()) &&
+               at.tail<2>().norm() <= searchMargin * domain_.apertureRadiusMm;
     };
     // The derivatives of another wavelength differ by a hundredth: they take the first step.
     if (!isNearDomain()) return {};
@@ -112,6 +106,16 @@ std::optional<RayOrigin> PolynomialLens::originNear(Eigen::Vector4d at, const Le
             return originOf(*mapped, {at.head<2>()}, {at.tail<2>()}, wavelengthNm);
     }
     return {};
+}
+
+bool PolynomialLens::passes(SensorPoint sensor, const ExitRay& ray, AperturePoint aperture,
+                            double wavelengthNm) const {
+    return statusOf(sensor, ray, aperture, wavelengthNm) == ConnectStatus::found &&
+           passesRims(sensor, aperture, wavelengthNm);
+}
+
+bool PolynomialLens::isNearSensor(const Eigen::Vector2d& sensorMm) const {
+    return (sensorMm.cwiseAbs().array() <= searchMargin * domain_.sensorHalfSizeMm.array()).all();
 }
 
 ConnectStatus PolynomialLens::statusOf(SensorPoint sensor, const ExitRay& ray,
@@ -219,9 +223,7 @@ std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, Aperture
                                          double toleranceRadians, Connection& connection) const {
     const auto exit = [&](const Eigen::Vector2d& s,
                           double apertureShare) -> std::optional<ExitRay> {
-        // A little beyond the domain, for searches to overshoot; far beyond it powers overflow.
-        constexpr double margin = 1.2;
-        if (!(s.cwiseAbs().array() <= margin * domain_.sensorHalfSizeMm.array()).all()) return {};
+        if (!isNearSensor(s)) return {};
         return map_.exitRay({s}, {apertureShare * aperture.mm}, wavelengthNm);
     };
     TargetSolver solver(exit, focalLengthMm_, toleranceRadians);

@@ -70,6 +70,12 @@ private:
     /// Rims apart.
     ConnectStatus statusOf(SensorPoint sensor, const ExitRay& ray, AperturePoint aperture,
                            double wavelengthNm) const;
+    /// …and rims, too.
+    bool passes(SensorPoint sensor, const ExitRay& ray, AperturePoint aperture,
+                double wavelengthNm) const;
+    /// A little beyond the domain, for searches to overshoot; far beyond it powers overflow.
+    static constexpr double searchMargin = 1.2;
+    bool isNearSensor(const Eigen::Vector2d& sensorMm) const;
     /// What trace() makes of it, unless rims or aperture block it.
     std::optional<RayOrigin> originOf(const PupilRay& mapped, SensorPoint sensor,
                                       AperturePoint aperture, double wavelengthNm) const;

@@ -95,8 +95,6 @@ RandomStream lightPathRandom(const View& view, SampleId id, int path, int count)
                         static_cast<std::uint32_t>(point));
 }
 
-bool isParted(const View& view) { return view.isSpectral && view.camera.settings().isDispersive; }
-
 SpectralSample drawWavelengths(const View& view, SampleId id) {
     if (!view.isSpectral) return {};
     return sampleWavelengths(pixelRandom(view, id, RandomDomain::wavelength).next());

@@ -118,7 +118,10 @@ CameraSample drawCameraSample(const View& view, SampleId id);
 /// The wavelengths of a sample, of its camera path and its light paths alike.
 SpectralSample drawWavelengths(const View& view, SampleId id);
 /// Whether each wavelength goes through the lens on a way of its own.
-bool isParted(const View& view);
+inline bool isParted(const Camera& camera, bool isSpectral) {
+    return isSpectral && camera.settings().isDispersive;
+}
+inline bool isParted(const View& view) { return isParted(view.camera, view.isSpectral); }
 /// Whether the filter of any pixel reaches `film`, of the view's window if it has one.
 bool isOnFilm(const View& view, Vec2 film);
 /// Whether any wavelength may splat there.

@@ -46,9 +46,8 @@ bool isAskedFor(const RenderCommand& command, const char* layer) {
 /// Light paths fall all over the picture, and so do wavelengths that a lens parts; of what they
 /// bring to a pixel in a sample the luminance alone is recorded.
 bool hasVarianceOfColors(const LoadedScene& loaded) {
-    const bool isParted =
-        loaded.film.color == FilmColor::xyz && loaded.camera->settings().isDispersive;
-    return loaded.estimator.kind == "pt" && !isParted;
+    return loaded.estimator.kind == "pt" &&
+           !isParted(*loaded.camera, loaded.film.color == FilmColor::xyz);
 }
 
 FilmLayers layersFor(const RenderCommand& command, const LoadedScene& loaded) {

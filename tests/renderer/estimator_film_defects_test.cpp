@@ -108,6 +108,21 @@ std::vector<std::vector<float>> skyByHeroes(const LoadedScene& loaded, std::uint
     return result;
 }
 
+/// Its pictures by an estimator.
+std::vector<std::vector<float>> skyBy(const std::string& kind, const LoadedScene& loaded,
+                                      std::uint32_t samples) {
+    std::vector<std::vector<float>> result;
+    for (std::uint64_t seed = 101; seed <= 112; ++seed) {
+        Film film = filmOf(loaded);
+        RenderSettings settings;
+        settings.samples = samples;
+        settings.seed = seed;
+        renderInto(film, loaded, kind, settings);
+        result.push_back(film.channels().front().pixels);
+    }
+    return result;
+}
+
 TEST_CASE("Estimators: light that a lens parts is as bright at the frame's border" *
           doctest::test_suite("statistical")) {
     for (const std::string filter : {"box", "blackman-harris"}) {
@@ -117,15 +132,7 @@ TEST_CASE("Estimators: light that a lens parts is as bright at the frame's borde
         const auto expected = skyByHeroes(loaded, 4096);
         for (const std::string kind : {"pt", "bdpt"}) {
             CAPTURE(kind);
-            std::vector<std::vector<float>> pictures;
-            for (std::uint64_t seed = 101; seed <= 112; ++seed) {
-                Film film = filmOf(loaded);
-                RenderSettings settings;
-                settings.samples = 256;
-                settings.seed = seed;
-                renderInto(film, loaded, kind, settings);
-                pictures.push_back(film.channels().front().pixels);
-            }
+            const auto pictures = skyBy(kind, loaded, 256);
             // Tiles of one pixel: the border is a third of the frame, its corners are four.
             const PictureComparison comparison = comparePictures(pictures, expected, 12, 1);
             CAPTURE(comparison.smallestP);
@@ -159,8 +166,7 @@ TEST_CASE("Estimators: a hero that goes on alone has all of its ray's weight bac
 TEST_CASE("Estimators: a lens that parts colours adds little noise of colour" *
           doctest::test_suite("statistical")) {
     // Under a white sky there is no other noise: what light one sample of a pixel misses comes with
-    // those of its neighbours, but for the share that lands elsewhere by chance. A hero alone has
-    // twelve times its mean squared for variance in the blue.
+    // those of its neighbours, but for the share that lands elsewhere by chance.
     const LoadedScene loaded = partedSky("box");
     const auto blueVariance = [&](const std::vector<std::vector<float>>& pictures) {
         double sum = 0.0;
@@ -171,16 +177,7 @@ TEST_CASE("Estimators: a lens that parts colours adds little noise of colour" *
         }
         return sum;
     };
-    std::vector<std::vector<float>> pictures;
-    for (std::uint64_t seed = 101; seed <= 112; ++seed) {
-        Film film = filmOf(loaded);
-        RenderSettings settings;
-        settings.samples = 64;
-        settings.seed = seed;
-        renderInto(film, loaded, "pt", settings);
-        pictures.push_back(film.channels().front().pixels);
-    }
-    CHECK(blueVariance(pictures) < 0.25 * blueVariance(skyByHeroes(loaded, 64)));
+    CHECK(blueVariance(skyBy("pt", loaded, 64)) < 0.25 * blueVariance(skyByHeroes(loaded, 64)));
 }
 
 TEST_CASE("Estimators: a wall is as bright through a thin lens, wherever that is focused") {

@@ -147,30 +147,37 @@ Connection PolynomialLens::solve(const Eigen::Vector3d& targetMm, AperturePoint 
                                            : solveByTwoSteps(targetMm, aperture, wavelengthNm);
 }
 
+Eigen::Vector2d PolynomialLens::sensorAt(const TargetSight& sight, AperturePoint aperture,
+                                         double wavelengthNm) const {
+    return sensorGuess(connectStart_, sight,
+                       start_.values({sight.field, aperture.mm, wavelengthNm}));
+}
+
 PolynomialLens::Guess PolynomialLens::firstGuess(const TargetSight& sight, AperturePoint aperture,
                                                  double wavelengthNm) const {
-    const auto none = [](ConnectStatus why) { return Guess{why, {0.0, 0.0}, false}; };
+    const auto none = [](ConnectStatus why) { return Guess{why, {}, false, {}}; };
     const bool isTrusted = sight.nearness <= connectStart_.trustedNearness;
     if (isTrusted && !(sight.field.norm() <= connectStart_.widestField + sight.nearness))
         return none(ConnectStatus::outOfField);
-    const Eigen::Vector2d guess =
-        sensorGuess(connectStart_, sight, start_.values({sight.field, aperture.mm, wavelengthNm}));
+    const Eigen::Vector2d guess = sensorAt(sight, aperture, wavelengthNm);
     // Searching for a point that sees the target where none does costs ten times what finding one
     // does.
     const bool isOutside =
         !(guess.cwiseAbs().array() <= farthestGuess * domain_.sensorHalfSizeMm.array()).all();
     if (isOutside && isTrusted) return none(ConnectStatus::outOfField);
-    if (!guess.allFinite()) return none(ConnectStatus::found);
+    if (!guess.allFinite()) return {ConnectStatus::found, {0.0, 0.0}, false, {0.0, 0.0}};
     const Eigen::Vector2d inside =
         guess.cwiseMax(-domain_.sensorHalfSizeMm).cwiseMin(domain_.sensorHalfSizeMm);
-    if (clear_.contains({inside}, aperture)) return {ConnectStatus::found, inside, true};
+    const auto at = [&](bool passesRims) {
+        return Guess{ConnectStatus::found, inside, passesRims, inside};
+    };
+    if (clear_.contains({inside}, aperture)) return at(true);
     // Of targets that are not near, guesses err by less than squared heights change by the margin.
     constexpr double farNearness = 0.25, margin = 0.1;
-    if (!isTrusted || isOutside || sight.nearness > farNearness)
-        return {ConnectStatus::found, inside, false};
+    if (!isTrusted || isOutside || sight.nearness > farNearness) return at(false);
     const double highest = highestSquare({inside}, aperture, wavelengthNm);
     if (!(highest <= 1.0 + margin)) return none(ConnectStatus::blocked);
-    return {ConnectStatus::found, inside, highest <= 1.0 - margin};
+    return at(highest <= 1.0 - margin);
 }
 
 Connection PolynomialLens::solveByNewton(const Eigen::Vector3d& target, AperturePoint aperture,
@@ -194,19 +201,39 @@ std::optional<Sighting> PolynomialLens::see(const Eigen::Vector3d& targetMm, Ape
 void PolynomialLens::seeEach(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                              std::span<const double> wavelengthsNm,
                              std::span<std::optional<Sighting>> sightings) const {
+    std::fill(sightings.begin(), sightings.end(), std::nullopt);
     const TargetSight sight = pupil_.sight(targetMm, aperture);
-    Eigen::Vector2d missedBy(0.0, 0.0);  // the first guess at the wavelength before
+    const auto inverseSquare = [&](std::size_t i) {
+        return 1.0 / (wavelengthsNm[i] * wavelengthsNm[i]);
+    };
+    std::optional<Guess> guess;  // at the first wavelength that may be seen by
+    struct End {
+        Eigen::Vector2d sensor, missedBy;  // by the guess at its wavelength
+        double inverseSquare;
+    };
+    std::optional<End> first;              // of the searches
+    std::optional<Eigen::Vector2d> moved;  // per inverse square, from there to the latest
     for (std::size_t i = 0; i < wavelengthsNm.size(); ++i) {
-        sightings[i].reset();
         if (!canSee(targetMm, aperture, wavelengthsNm[i])) continue;
-        Guess guess = firstGuess(sight, aperture, wavelengthsNm[i]);
-        if (guess.status != ConnectStatus::found) continue;
-        guess.correctionMm = missedBy;
+        if (!guess) {
+            // What is clear of a target at one wavelength is so at all: guesses leave a margin for
+            // what they err by, against which wavelengths hardly part.
+            guess = firstGuess(sight, aperture, wavelengthsNm[i]);
+            if (guess->status != ConnectStatus::found) return;
+        } else if (first && moved) {
+            guess->beginMm = first->sensor + (inverseSquare(i) - first->inverseSquare) * *moved;
+        } else {
+            guess->beginMm = sensorAt(sight, aperture, wavelengthsNm[i]);
+            if (first) guess->beginMm += first->missedBy;
+        }
         Connection connection;
         const std::optional<Aimed> end =
-            aim(targetMm, aperture, wavelengthsNm[i], guess, sightToleranceRadians, connection);
+            aim(targetMm, aperture, wavelengthsNm[i], *guess, sightToleranceRadians, connection);
         if (!end) continue;
-        missedBy = end->sensor - guess.sensorMm;
+        if (!first)
+            first = End{end->sensor, end->sensor - guess->beginMm, inverseSquare(i)};
+        else if (const double by = inverseSquare(i) - first->inverseSquare; by != 0.0)
+            moved = (end->sensor - first->sensor) / by;
         if (connection.status == ConnectStatus::found)
             sightings[i] = Sighting{{end->sensor}, end->ray};
     }
@@ -227,7 +254,7 @@ std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, Aperture
         return map_.exitRay({s}, {apertureShare * aperture.mm}, wavelengthNm);
     };
     TargetSolver solver(exit, focalLengthMm_, toleranceRadians);
-    std::optional<Aimed> end = solver.newton(target, guess.sensorMm + guess.correctionMm);
+    std::optional<Aimed> end = solver.newton(target, guess.beginMm);
     if (!end) end = solver.follow(target);
     connection.iterations = solver.steps();
     connection.status =

@@ -36,8 +36,9 @@ public:
     /// that leaves within sightToleranceRadians of it. First guesses mostly do: one evaluation.
     std::optional<Sighting> see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                 double wavelengthNm) const override;
-    /// From the second wavelength on a first guess is moved by what the one before missed by, which
-    /// hardly changes with the wavelength.
+    /// The first wavelength's guess decides for all whether there is anything to see. The second's
+    /// is moved by what the first one's missed by, which hardly changes with the wavelength;
+    /// further searches begin where the two ends lead, as 1/λ² (Cauchy).
     void seeEach(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                  std::span<const double> wavelengthsNm,
                  std::span<std::optional<Sighting>> sightings) const override;
@@ -57,8 +58,11 @@ private:
         ConnectStatus status;
         Eigen::Vector2d sensorMm;
         bool passesRims;  // so clearly that a ray from near it does, too; false says nothing
-        Eigen::Vector2d correctionMm{0.0, 0.0};  // from it to where the search had better begin
+        Eigen::Vector2d beginMm;  // where the search begins
     };
+    /// What the fit guesses without a search, be it on the sensor or not.
+    Eigen::Vector2d sensorAt(const TargetSight& sight, AperturePoint aperture,
+                             double wavelengthNm) const;
     Guess firstGuess(const TargetSight& sight, AperturePoint aperture, double wavelengthNm) const;
     /// The largest of the clip polynomials, or NaN if one is: unless it is at most 1 a rim blocks
     /// the ray.

@@ -154,11 +154,11 @@ void contribute(const CameraSample& sample, Technique technique, const Spectrum&
     }
     for (std::size_t lane = 0; lane < Spectrum::lanes; ++lane) {
         const auto& origin = (*sample.origins)[lane];
-        const Spectrum landing = laneAlone(value, lane);
+        const float landing = value[static_cast<int>(lane)];
         const bool isSplat = lane > 0;
-        if (!origin || (isSplat && isBlack(landing))) continue;
+        if (!origin || (isSplat && landing == 0.0f)) continue;
         contributions.push_back(
-            {technique, sample.color.onFilm(landing), weights[lane], origin->film, isSplat});
+            {technique, sample.color.onFilm(lane, landing), weights[lane], origin->film, isSplat});
     }
 }
 

@@ -122,10 +122,11 @@ private:
     }
 
     void splat(std::size_t s, std::size_t lane, Vec2 film, const Spectrum& value, float weight) {
-        const Spectrum landing =
-            partsColors(light_.vertices[s - 1]) ? laneAlone(value, lane) : value;
+        const Spectrum landing = partsColors(light_.vertices[s - 1])
+                                     ? sample_.color.onFilm(lane, value[static_cast<int>(lane)])
+                                     : sample_.color.onFilm(value);
         sample_.result.contributions.push_back({.technique = {static_cast<int>(s), 1},
-                                                .value = sample_.color.onFilm(landing),
+                                                .value = landing,
                                                 .weight = weight,
                                                 .film = film,
                                                 .isSplat = true});

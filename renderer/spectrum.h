@@ -83,12 +83,6 @@ inline Spectrum heroAlone(const Spectrum& s, float standsFor = Spectrum::lanes) 
     return {standsFor * s[0], 0.0f, 0.0f, 0.0f};
 }
 
-/// One lane, and no light in the others.
-inline Spectrum laneAlone(const Spectrum& s, std::size_t lane) {
-    return Spectrum::fromLanes(
-        [&](int i) { return static_cast<std::size_t>(i) == lane ? s[i] : 0.0f; });
-}
-
 /// A scalar to choose by (light power, Russian roulette), not a colour measurement: the mean of the
 /// lanes in use.
 inline float brightness(const Spectrum& s) { return (s[0] + s[1] + s[2]) * (1.0f / 3.0f); }

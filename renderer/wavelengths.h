@@ -40,6 +40,13 @@ struct SpectralSample {
 
     /// What the film adds up: the RGB lanes themselves, or X, Y, Z and 0.
     Spectrum onFilm(const Spectrum& lanes) const;
+    /// The same of one lane of a spectral render, the others black.
+    Spectrum onFilm(std::size_t lane, float value) const {
+        const auto response = [&](std::size_t i) {
+            return value * xyz[i][static_cast<int>(lane)] * (1.0f / Spectrum::lanes);
+        };
+        return {response(0), response(1), response(2), 0.0f};
+    }
 };
 
 /// Four wavelengths a quarter of the visible range apart (Wilkie et al. 2014, "Hero Wavelength

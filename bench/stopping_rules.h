@@ -104,7 +104,6 @@ std::size_t stopPicture(const Streams& streams, const IsDone& isDone) {
     FilmLayers layers;
     layers.luminanceVariance = true;
     Film film({stoppingWidth, stoppingHeight, 0, 0, stoppingWidth, stoppingHeight}, layers);
-    film.expectCameraLight();
     for (std::size_t i = 0, next = 8; i < streams.length; ++i) {
         for (int y = 0; y < stoppingHeight; ++y)
             for (int x = 0; x < stoppingWidth; ++x) {

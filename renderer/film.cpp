@@ -13,13 +13,6 @@ namespace etendue {
 
 namespace {
 
-Vec3 firstLanes(const Spectrum& s) { return {s[0], s[1], s[2]}; }
-
-/// Of a pixel; zero where there are none.
-Vec3d colorOf(const std::vector<ExactColor>& sums, std::size_t pixel) {
-    return sums.empty() ? Vec3d() : sums[pixel].value();
-}
-
 /// Zero where there was nothing to divide.
 double mean(double sum, double count) { return count > 0.0 ? sum / count : 0.0; }
 
@@ -60,6 +53,7 @@ Film::Film(const FrameWindow& window, const FilmLayers& layers, FilmColor color)
     if (!isInside(window.x, window.width, window.fullWidth) ||
         !isInside(window.y, window.height, window.fullHeight))
         throw std::invalid_argument("film: the window must have pixels and lie in the full frame");
+    state_.colorSums.resize(pixelCount());
     state_.layerSums.resize(pixelCount() * static_cast<std::size_t>(slots_.count));
 }
 
@@ -67,16 +61,12 @@ void Film::addTo(std::size_t slot, double value) {
     if (!state_.layerSums.add(slot, value)) countRounded();
 }
 
-void Film::addSquare(std::size_t slot, double value) { state_.layerSums.add(slot, value * value); }
+void Film::addSquare(std::size_t slot, float value) {
+    state_.layerSums.add(slot, double{value} * double{value});
+}
 
 void Film::addTo(std::size_t slot, Vec3 v) {
     for (int i = 0; i < 3; ++i) addTo(slot + static_cast<std::size_t>(i), double{v[i]});
-}
-
-void Film::expectSplats(std::uint64_t lightPathsPerSample) {
-    samplesPerLightPath_ = 1.0 / static_cast<double>(lightPathsPerSample);
-    state_.splatSums.resize(pixelCount());
-    expectSampleLuminance();
 }
 
 void Film::countRounded() {
@@ -90,25 +80,23 @@ bool Film::countBad() {
 
 bool Film::add(int x, int y, const Spectrum& value) {
     if (!isUsable(value)) return countBad();
-    if (state_.cameraSums.empty())
-        throw std::logic_error("film: a camera sample, where no light of them was expected");
-    const Vec3 color = firstLanes(value);
-    const std::size_t pixel = pixelNumber(x, y);
-    if (!state_.cameraSums[pixel].add(color.x, color.y, color.z)) countRounded();
-    if (slots_.squares >= 0)
-        for (int i = 0; i < 3; ++i) addSquare(slotOf(pixel, slots_.squares + i), double{color[i]});
-    if (slots_.luminanceSquare >= 0) {
-        const double luminance = luminanceOf(toDouble(color));
-        if (state_.sampleLuminance.empty())
-            addSquare(slotOf(pixel, slots_.luminanceSquare), luminance);
-        else
-            state_.sampleLuminance[pixel] += static_cast<float>(luminance);
-    }
+    if (isSplattedOn())
+        throw std::logic_error("film: a sample of one pixel, where light is splatted");
+    addSample(pixelNumber(x, y), toVec3(value));
     return true;
 }
 
+void Film::addSample(std::size_t pixel, Vec3 light) {
+    if (!state_.colorSums[pixel].add(light.x, light.y, light.z)) countRounded();
+    if (slots_.squares >= 0)
+        for (int i = 0; i < 3; ++i) addSquare(slotOf(pixel, slots_.squares + i), light[i]);
+    if (slots_.luminanceSquare >= 0)
+        addSquare(slotOf(pixel, slots_.luminanceSquare),
+                  static_cast<float>(luminanceOf(toDouble(light))));
+}
+
 bool Film::addFeatures(int x, int y, const FilmFeatures& features) {
-    const Vec3 albedo = firstLanes(features.albedo);
+    const Vec3 albedo = toVec3(features.albedo);
     if (!isUsable(features.albedo) || !isFinite(features.normal) || !isFinite(features.position) ||
         !std::isfinite(features.depth))
         return countBad();
@@ -130,10 +118,15 @@ void Film::finishSample(int firstRow, int endRow) {
     if (!state_.extraSamples.empty())
         std::fill(state_.extraSamples.begin() + static_cast<std::ptrdiff_t>(first),
                   state_.extraSamples.begin() + static_cast<std::ptrdiff_t>(end), std::uint16_t{0});
-    if (state_.sampleLuminance.empty()) return;
+    if (!isSplattedOn()) return;
     for (std::size_t pixel = first; pixel < end; ++pixel) {
-        const float luminance = std::exchange(state_.sampleLuminance[pixel], 0.0f);
-        addSquare(slotOf(pixel, slots_.luminanceSquare), luminance);
+        const Vec3 light = std::exchange(state_.sampleLight[pixel], {});
+        if (light == Vec3()) continue;
+        // What is usable may add up to what is not.
+        if (isUsable(light))
+            addSample(pixel, light);
+        else
+            countBad();
     }
 }
 
@@ -141,35 +134,29 @@ void Film::checkSize(const FilmState& other) const {
     const auto fits = [](std::size_t size, std::size_t expected) {
         return size == 0 || size == expected;
     };
-    if (!fits(other.cameraSums.size(), pixelCount()) ||
-        !fits(other.splatSums.size(), pixelCount()) ||
+    if (other.colorSums.size() != pixelCount() ||
         other.layerSums.size() != state_.layerSums.size() ||
         other.layerSums.rests.size() != other.layerSums.size() ||
         !fits(other.extraSamples.size(), pixelCount()) ||
-        !fits(other.sampleLuminance.size(), layers_.luminanceVariance ? pixelCount() : 0))
+        !fits(other.sampleLight.size(), pixelCount()))
         throw std::invalid_argument("film: the state is of another window or of other layers");
 }
 
 void Film::merge(const FilmState& other) {
     checkSize(other);
-    const auto addAll = [&](std::vector<ExactColor>& to, const std::vector<ExactColor>& from) {
-        to.resize(std::max(to.size(), from.size()));
-        for (std::size_t i = 0; i < from.size(); ++i)
-            if (!to[i].add(from[i])) ++state_.roundedTerms;
-    };
-    addAll(state_.cameraSums, other.cameraSums);
-    addAll(state_.splatSums, other.splatSums);
+    for (std::size_t pixel = 0; pixel < pixelCount(); ++pixel)
+        if (!state_.colorSums[pixel].add(other.colorSums[pixel])) ++state_.roundedTerms;
     const ExactSums& layers = other.layerSums;
     for (std::size_t i = 0; i < layers.size(); ++i)
         if (!state_.layerSums.add(i, layers.sums[i], layers.rests[i])) ++state_.roundedTerms;
-    if (!other.extraSamples.empty()) expectUnfinishedSample();
-    for (std::size_t pixel = 0; pixel < other.extraSamples.size(); ++pixel)
-        state_.extraSamples[pixel] =
-            static_cast<std::uint16_t>(state_.extraSamples[pixel] + other.extraSamples[pixel]);
-    for (std::size_t pixel = 0; pixel < other.sampleLuminance.size(); ++pixel)
-        addSquare(slotOf(pixel, slots_.luminanceSquare), other.sampleLuminance[pixel]);
+    if (!other.sampleLight.empty()) expectSplats();
+    if (!other.extraSamples.empty() && countsUnfinished(other)) {
+        expectUnfinishedSample();
+        for (std::size_t pixel = 0; pixel < other.extraSamples.size(); ++pixel)
+            state_.extraSamples[pixel] =
+                static_cast<std::uint16_t>(state_.extraSamples[pixel] + other.extraSamples[pixel]);
+    }
     state_.samples += other.samples;
-    state_.lightPaths += other.lightPaths;
     state_.badSamples += other.badSamples;
     state_.roundedTerms += other.roundedTerms;
 }
@@ -185,14 +172,14 @@ double Film::sampleCount(std::size_t pixel) const {
 }
 
 Vec3d Film::meanColor(std::size_t pixel) const {
-    return colorOf(state_.cameraSums, pixel) * mean(1.0, sampleCount(pixel)) +
-           colorOf(state_.splatSums, pixel) * mean(1.0, static_cast<double>(state_.lightPaths));
+    if (isSplattedOn() && state_.samples == 0) return toDouble(state_.sampleLight[pixel]);
+    return state_.colorSums[pixel].value() * mean(1.0, lightCount(pixel));
 }
 
 double Film::luminance(std::size_t pixel) const { return luminanceOf(meanColor(pixel)); }
 
 double Film::luminanceVariance(std::size_t pixel) const {
-    const double n = sampleCount(pixel);
+    const double n = lightCount(pixel);
     return varianceOfMean(n * luminance(pixel),
                           state_.layerSums[slotOf(pixel, slots_.luminanceSquare)], n);
 }
@@ -231,8 +218,8 @@ std::vector<ExrChannels> Film::channels() const {
                      ? std::vector<std::string>{"variance.X", "variance.Y", "variance.Z"}
                      : std::vector<std::string>{"variance.R", "variance.G", "variance.B"},
                  [&](std::size_t pixel, int i) {
-                     return varianceOfMean(colorOf(state_.cameraSums, pixel)[i],
-                                           sum(pixel, slots_.squares + i), sampleCount(pixel));
+                     return varianceOfMean(state_.colorSums[pixel].value()[i],
+                                           sum(pixel, slots_.squares + i), lightCount(pixel));
                  });
     // Of a spectral film that is one of the three above.
     if (layers_.luminanceVariance && !(layers_.variance && color_ == FilmColor::xyz))

@@ -1,5 +1,5 @@
-// Film: what the camera samples of a picture, or of a window of it, have added up to. Sums and
-// counts, never averages, so that viewing, resuming and merging are the same thing.
+// Film: what the samples of a picture, or of a window of it, have added up to. Sums and counts,
+// never averages, so that viewing, resuming and merging are the same thing.
 #pragma once
 
 #include <cassert>
@@ -24,7 +24,7 @@ struct FilmLayers {
     bool position = false;
     bool variance = false;  // of the pixel's mean, estimated from the spread of its samples; of a
                             // spectral film that of X, Y and Z
-    bool luminanceVariance = false;  // the same of the luminance, splats included
+    bool luminanceVariance = false;  // the same of the luminance
 
     friend bool operator==(const FilmLayers&, const FilmLayers&) = default;
 };
@@ -40,11 +40,9 @@ struct FilmFeatures {
 /// All that a film remembers; write it down and a render can go on elsewhere.
 struct FilmState {
     // Pixel after pixel of the window, row by row.
-    std::vector<ExactColor> cameraSums;  // empty when camera samples bring no light
-    std::vector<ExactColor> splatSums;   // by light paths; empty when there are none
-    ExactSums layerSums;                 // as many a pixel as the layers have
+    std::vector<ExactColor> colorSums;
+    ExactSums layerSums;  // as many a pixel as the layers have
     std::uint64_t samples = 0;
-    std::uint64_t lightPaths = 0;  // of the whole frame, not of the window alone
     std::uint64_t badSamples = 0;
     std::uint64_t roundedTerms = 0;  // of the pictures' sums: 0 says that they are exact
 
@@ -53,9 +51,9 @@ struct FilmState {
     /// For each pixel, its samples beyond `samples`: 1 where an unfinished one is done, or more
     /// where several such renders were merged. Empty as long as there was none.
     std::vector<std::uint16_t> extraSamples;
-    /// The luminance that the unfinished sample has brought to each pixel; empty unless light is
-    /// splatted, by light paths or the camera's, and its variance wanted.
-    std::vector<float> sampleLuminance;
+    /// The light of the sample at hand, which joins the sums when all of the frame has had it;
+    /// empty unless light is splatted.
+    std::vector<Vec3> sampleLight;
 
     friend bool operator==(const FilmState&, const FilmState&) = default;
 };
@@ -67,13 +65,17 @@ enum class FilmColor { rgb, xyz };
 /// Linear Rec. 709 of a sum.
 Vec3d rgbOf(FilmColor color, Vec3d sum);
 
+/// What a film takes of a contribution: its first three lanes.
+inline Vec3 toVec3(const Spectrum& s) { return {s[0], s[1], s[2]}; }
+
 /// Whether a film would take the value: finite, and not negative.
-inline bool isUsable(const Spectrum& value) {
+inline bool isUsable(Vec3 value) {
     const auto isIn = [](float lane) {
         return lane >= 0.0f && lane <= std::numeric_limits<float>::max();
     };
-    return isIn(value[0]) && isIn(value[1]) && isIn(value[2]);
+    return isIn(value.x) && isIn(value.y) && isIn(value.z);
 }
+inline bool isUsable(const Spectrum& value) { return isUsable(toVec3(value)); }
 
 /// Pixels are addressed in the full frame; film point (x + 0.5, y + 0.5) is the centre of pixel
 /// (x, y). The functions that add to a pixel may run at the same time for different pixels.
@@ -83,41 +85,27 @@ public:
     explicit Film(const FrameWindow& window, const FilmLayers& layers = {},
                   FilmColor color = FilmColor::rgb);
 
-    /// From now on camera samples bring light. To be called before add(); 30 bytes a pixel.
-    void expectCameraLight() { state_.cameraSums.resize(pixelCount()); }
-    /// Adds one sample's first three lanes. One that is negative or not finite is counted, left
-    /// out, and reported by `false`.
+    /// Adds the first three lanes of a pixel's sample, if it is all that the sample brings there:
+    /// unless light is splatted. One that is negative or not finite is counted, left out, and
+    /// reported by `false`.
     bool add(int x, int y, const Spectrum& value);
     /// What that sample met; not called for one that met nothing. As for add(), a value that is not
     /// finite is counted and left out.
     bool addFeatures(int x, int y, const FilmFeatures& features);
-    /// From now on light is splatted, by so many light paths of the whole frame in each sample. To
-    /// be called before addSplat(); as many bytes again.
-    void expectSplats(std::uint64_t lightPathsPerSample);
-    /// Adds light that a light path brought to pixel (x, y) of the window: the film holds the mean
-    /// over all light paths. The value must be finite and not negative (isUsable).
-    void addSplat(int x, int y, const Spectrum& value) {
-        addSplatTo(state_.splatSums, pixelNumber(x, y), value, samplesPerLightPath_);
+    /// From now on light is splatted: samples of any pixel bring light to many. It belongs to the
+    /// picture when all of the frame has had the sample, since of a part of it nobody can say how
+    /// much is missing. To be called before addToSample(); 12 bytes a pixel.
+    void expectSplats() { state_.sampleLight.resize(pixelCount()); }
+    /// Adds some of the light that the sample at hand brings to the pixel, from anywhere. Usable;
+    /// always in the same order, since floats are added.
+    void addToSample(int x, int y, Vec3 light) { state_.sampleLight[pixelNumber(x, y)] += light; }
+    /// Has pixels first … last of a row brought near, for what will be added to them soon. To be
+    /// inlined, since GCC drops calls to a function that does nothing but prefetch.
+    [[gnu::always_inline]] void expectSplat(int first, int last, int y) const {
+        const Vec3* light = state_.sampleLight.data();
+        prefetch(light + pixelNumber(first, y), light + pixelNumber(last, y) + 1);
     }
-    /// Has pixels first … last of a row brought near, for what a light path or a camera's will
-    /// splat on them soon. To be inlined, since GCC drops calls to a function that does nothing but
-    /// prefetch.
-    [[gnu::always_inline]] void expectSplat(int first, int last, int y, bool isLights) const {
-        const std::size_t begin = pixelNumber(first, y), end = pixelNumber(last, y) + 1;
-        const ExactColor* sums = (isLights ? state_.splatSums : state_.cameraSums).data();
-        prefetch(sums + begin, sums + end);
-        if (!state_.sampleLuminance.empty())
-            prefetch(state_.sampleLuminance.data() + begin, state_.sampleLuminance.data() + end);
-    }
-    /// From now on camera samples bring light to other pixels than their own. To be called before
-    /// addCameraSplat().
-    void expectCameraSplats() { expectSampleLuminance(); }
-    /// Adds light that a camera sample, of another pixel or of this one, brought to pixel (x, y).
-    /// As for addSplat() it must be usable.
-    void addCameraSplat(int x, int y, const Spectrum& value) {
-        addSplatTo(state_.cameraSums, pixelNumber(x, y), value, 1.0);
-    }
-    void addLightPaths(std::uint64_t count) { state_.lightPaths += count; }
+    /// Of a sample that is left out. False.
     bool countBad();
     /// Every pixel of the window has had `count` more samples: the means' divisor.
     void addSamples(std::uint64_t count) { state_.samples += count; }
@@ -128,19 +116,21 @@ public:
     void countUnfinished(int x, int y) { ++state_.extraSamples[pixelNumber(x, y)]; }
     /// So many parts of it are done.
     void setUnfinishedParts(std::uint64_t parts) { state_.unfinishedParts = parts; }
-    /// Every pixel has had the sample, and all that is splatted is there. The rows (from the
+    /// Every pixel has had the sample, and all that it splats is there. The rows (from the
     /// window's top) of one call are one thread's.
     void finishSample(int firstRow, int endRow);
 
-    /// Adds another render of the same window, layers and color, if by other samples. Throws
-    /// std::invalid_argument if its size shows that it is not.
+    /// Adds another render of the same window, layers and color, if by other samples; of light
+    /// that is splatted only that of whole samples. Throws std::invalid_argument if its size shows
+    /// that it is not.
     void merge(const FilmState& other);
     /// Takes up such a state in place of its own. Throws std::invalid_argument as merge() does.
     void restore(FilmState state);
 
     /// Images of the means: R, G, B first, then each layer asked for: variance.R …, variance.Y,
     /// albedo.R …, normal.X …, depth.Z, position.X …. Zero before the first sample; the variance,
-    /// before the second.
+    /// before the second. Where light is splatted, what has come of the first sample until it is
+    /// whole: too little.
     std::vector<ExrChannels> channels() const;
     /// Of a pixel's mean, with splats, by its place in the window, row by row.
     double luminance(std::size_t pixel) const;
@@ -160,6 +150,10 @@ public:
     std::uint64_t samples() const { return state_.samples; }
     std::uint64_t badSamples() const { return state_.badSamples; }
     bool wantsFeatures() const { return slots_.hits >= 0; }
+    /// Whether such a state's sums have something of a sample that it has not finished.
+    bool countsUnfinished(const FilmState& other) const {
+        return other.sampleLight.empty() || wantsFeatures();
+    }
 
 private:
     /// Where in a pixel's run of FilmState::layerSums a layer's begin, or −1.
@@ -176,17 +170,8 @@ private:
         return static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
                static_cast<std::size_t>(x - window_.x);
     }
-    void expectSampleLuminance() {
-        if (layers_.luminanceVariance) state_.sampleLuminance.resize(pixelCount());
-    }
-    /// `samples`: of the pixel, to which the splat belongs: of a light path, a part of one.
-    void addSplatTo(std::vector<ExactColor>& sums, std::size_t pixel, const Spectrum& value,
-                    double samples) {
-        if (!sums[pixel].add(value[0], value[1], value[2])) countRounded();
-        if (!state_.sampleLuminance.empty())
-            state_.sampleLuminance[pixel] +=
-                static_cast<float>(samples * luminanceOf(Vec3d{value[0], value[1], value[2]}));
-    }
+    /// The light of one sample, which is usable.
+    void addSample(std::size_t pixel, Vec3 light);
     /// Each cache line of some memory, which is not empty.
     [[gnu::always_inline]] static void prefetch(const void* begin, const void* end) {
         const char* last = static_cast<const char*>(end) - 1;
@@ -201,17 +186,23 @@ private:
     /// Adds to a layer's sum, or to three.
     void addTo(std::size_t slot, Vec3 v);
     void addTo(std::size_t slot, double value);
-    /// Squares of small samples have to be rounded beside others: no picture's sum is, by that.
-    void addSquare(std::size_t slot, double value);
+    /// Squares of small samples have to be rounded beside others: no picture's sum is, by that. Of
+    /// floats, whose squares are doubles without error.
+    void addSquare(std::size_t slot, float value);
     /// A term had to be.
     void countRounded();
     double luminanceOf(Vec3d value) const {
         return color_ == FilmColor::xyz ? value.y
                                         : 0.2126 * value.x + 0.7152 * value.y + 0.0722 * value.z;
     }
-    /// The pixel's camera samples.
+    /// The pixel's samples, the unfinished one among them if it has had that.
     double sampleCount(std::size_t pixel) const;
-    /// The mean over samples and that over light paths, in the film's own colors.
+    /// Those of its light.
+    double lightCount(std::size_t pixel) const {
+        return isSplattedOn() ? static_cast<double>(state_.samples) : sampleCount(pixel);
+    }
+    bool isSplattedOn() const { return !state_.sampleLight.empty(); }
+    /// In the film's own colors.
     Vec3d meanColor(std::size_t pixel) const;
     void checkSize(const FilmState& other) const;
 
@@ -220,7 +211,6 @@ private:
     FilmColor color_;
     Slots slots_;
     FilmState state_;
-    double samplesPerLightPath_ = 0.0;
 };
 
 }  // namespace etendue

@@ -129,9 +129,9 @@ void requireFinite(const FilmState& state, const fs::path& file) {
     const auto arePossible = [](const std::vector<ExactColor>& sums) {
         return std::ranges::all_of(sums, [](const ExactColor& s) { return s.isPossible(); });
     };
-    if (!arePossible(state.cameraSums) || !arePossible(state.splatSums) ||
-        !isFinite(state.layerSums.sums) || !isFinite(state.layerSums.rests) ||
-        !isFinite(state.sampleLuminance))
+    if (!arePossible(state.colorSums) || !isFinite(state.layerSums.sums) ||
+        !isFinite(state.layerSums.rests) ||
+        !std::ranges::all_of(state.sampleLight, [](Vec3 light) { return isUsable(light); }))
         throw damaged(file, "has sums that are not finite");
 }
 
@@ -175,17 +175,14 @@ void writePart(const fs::path& file, const PartInfo& info, const Film& film,
     }
     Trailer trailer{magic, writer.size(), 0, {}};
     const std::string header =
-        partHeaderText(info, state,
-                       {!state.cameraSums.empty(), !state.splatSums.empty(),
-                        !state.extraSamples.empty(), !state.sampleLuminance.empty()});
+        partHeaderText(info, state, {!state.extraSamples.empty(), !state.sampleLight.empty()});
     trailer.headerSize = header.size();
     writer.write(header.data(), header.size());
-    writer.write(state.cameraSums);
-    writer.write(state.splatSums);
+    writer.write(state.colorSums);
     writer.write(state.layerSums.sums);
     writer.write(state.layerSums.rests);
     writer.write(state.extraSamples);
-    writer.write(state.sampleLuminance);
+    writer.write(state.sampleLight);
     writer.write(&trailer, sizeof trailer - sizeof trailer.digest);
     std::ranges::copy(writer.digest(), trailer.digest.begin());
     atomic.write(trailer.digest.data(), trailer.digest.size());
@@ -204,14 +201,13 @@ Part readPart(const fs::path& file) {
     const FrameWindow& window = header.part.info.window;
     const std::size_t pixels =
         static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
-    if (header.planes.cameraSums) reader.read(state.cameraSums, pixels);
-    if (header.planes.splatSums) reader.read(state.splatSums, pixels);
+    reader.read(state.colorSums, pixels);
     const std::size_t layerSums =
         pixels * static_cast<std::size_t>(Film::sumsPerPixel(header.part.info.layers));
     reader.read(state.layerSums.sums, layerSums);
     reader.read(state.layerSums.rests, layerSums);
     if (header.planes.extraSamples) reader.read(state.extraSamples, pixels);
-    if (header.planes.sampleLuminance) reader.read(state.sampleLuminance, pixels);
+    if (header.planes.sampleLight) reader.read(state.sampleLight, pixels);
     requireFinite(state, file);
     return std::move(header.part);
 }
@@ -257,11 +253,13 @@ void mergePart(PartInfo& info, Film& film, const Part& part, const fs::path& fil
         claim(range);
         ranges.add(range);
     }
-    for (const std::uint32_t s : part.info.unfinishedSamples) claim({s, s + 1});
+    std::vector<std::uint32_t> unfinished;
+    if (film.countsUnfinished(part.state)) unfinished = part.info.unfinishedSamples;
+    for (const std::uint32_t s : unfinished) claim({s, s + 1});
     film.merge(part.state);
     info.ranges = std::move(ranges);
-    info.unfinishedSamples.insert(info.unfinishedSamples.end(), part.info.unfinishedSamples.begin(),
-                                  part.info.unfinishedSamples.end());
+    info.unfinishedSamples.insert(info.unfinishedSamples.end(), unfinished.begin(),
+                                  unfinished.end());
     std::ranges::sort(info.unfinishedSamples);
     info.seconds += part.info.seconds;
 }

@@ -59,7 +59,9 @@ PartInfo readPartInfo(const std::filesystem::path& file);
 std::string differenceOf(const PartInfo& expected, const PartInfo& found);
 
 /// Adds a part's samples to those of `info` and `film`. Throws InputError, naming `file`, and
-/// changes nothing, if it is of another picture or has samples that are there already.
+/// changes nothing, if it is of another picture or has samples that are there already. Of one that
+/// is not finished, and of which the sums have nothing, nothing is taken, and another part may have
+/// it.
 void mergePart(PartInfo& info, Film& film, const Part& part, const std::filesystem::path& file);
 
 }  // namespace etendue

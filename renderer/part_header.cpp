@@ -14,7 +14,7 @@ namespace etendue {
 
 namespace {
 
-constexpr int version = 4;
+constexpr int version = 5;
 constexpr double mostCount = 0x1p62;
 
 struct LayerName {
@@ -32,10 +32,8 @@ struct PlaneName {
     const char* name;
     bool PartPlanes::*isThere;
 };
-constexpr std::array planeNames{PlaneName{"camera-sums", &PartPlanes::cameraSums},
-                                PlaneName{"splat-sums", &PartPlanes::splatSums},
-                                PlaneName{"extra-samples", &PartPlanes::extraSamples},
-                                PlaneName{"sample-luminance", &PartPlanes::sampleLuminance}};
+constexpr std::array planeNames{PlaneName{"extra-samples", &PartPlanes::extraSamples},
+                                PlaneName{"sample-light", &PartPlanes::sampleLight}};
 
 /// Metadata of a picture: a text, or so many numbers.
 struct MetadataName {
@@ -140,7 +138,6 @@ void parseSamples(const ConfigTable& table, PartInfo& info, FilmState& state) {
         return static_cast<std::uint64_t>(table.integer(key, {0.0, mostCount}));
     };
     state.unfinishedParts = count("unfinished_parts");
-    state.lightPaths = count("light_paths");
     state.badSamples = count("bad_samples");
     state.roundedTerms = count("rounded_terms");
     info.seconds = table.number("seconds", Range::nonNegative());
@@ -159,11 +156,10 @@ std::uint64_t bytesOfSums(const PartHeader& header) {
     const auto pixels = static_cast<std::uint64_t>(info.window.width) *
                         static_cast<std::uint64_t>(info.window.height);
     constexpr std::uint64_t perSum = sizeof(double) + sizeof(float);
-    std::uint64_t perPixel = static_cast<std::uint64_t>(Film::sumsPerPixel(info.layers)) * perSum;
-    if (header.planes.cameraSums) perPixel += sizeof(ExactColor);
-    if (header.planes.splatSums) perPixel += sizeof(ExactColor);
+    std::uint64_t perPixel =
+        sizeof(ExactColor) + static_cast<std::uint64_t>(Film::sumsPerPixel(info.layers)) * perSum;
     if (header.planes.extraSamples) perPixel += sizeof(std::uint16_t);
-    if (header.planes.sampleLuminance) perPixel += sizeof(float);
+    if (header.planes.sampleLight) perPixel += sizeof(Vec3);
     return pixels * perPixel;
 }
 
@@ -171,12 +167,12 @@ std::string partHeaderText(const PartInfo& info, const FilmState& state, PartPla
     const FrameWindow& w = info.window;
     std::string text = fmt::format(
         "[part]\nversion = {}\nranges = {}\nunfinished = {}\nunfinished_parts = {}\n"
-        "light_paths = {}\nbad_samples = {}\nrounded_terms = {}\nseconds = {}\nplanes = {}\n\n",
+        "bad_samples = {}\nrounded_terms = {}\nseconds = {}\nplanes = {}\n\n",
         version,
         listOf(info.ranges.ranges(),
                [](SampleRange r) { return fmt::format("[{}, {}]", r.begin, r.end); }),
         listOf(info.unfinishedSamples, [](std::uint32_t s) { return std::to_string(s); }),
-        state.unfinishedParts, state.lightPaths, state.badSamples, state.roundedTerms,
+        state.unfinishedParts, state.badSamples, state.roundedTerms,
         fmt::format("{:.6f}", info.seconds), listOf(planeNames, [&](const PlaneName& p) {
             return planes.*p.isThere ? tomlString(p.name) : std::string();
         }));
@@ -206,8 +202,6 @@ PartHeader parsePartHeader(std::string_view text, const std::filesystem::path& f
     setFlags(part, "planes", planeNames, &PlaneName::isThere, header.planes);
     info.window = parseWindow(film);
     setFlags(film, "layers", layerNames, &LayerName::isWanted, info.layers);
-    if (header.planes.sampleLuminance && !info.layers.luminanceVariance)
-        part.fail("planes", "\"sample-luminance\" is for films with \"luminance-variance\"");
     info.color = film.choice("color", {"rgb", "xyz"}) == "xyz" ? FilmColor::xyz : FilmColor::rgb;
     for (const std::string& key : madeFrom.keys())
         info.madeFrom.emplace_back(key, madeFrom.text(key));

@@ -10,9 +10,9 @@
 
 namespace etendue {
 
-/// Which of the film's sums a part has; those of layers it always has.
+/// What a part has of the film besides its sums.
 struct PartPlanes {
-    bool cameraSums = false, splatSums = false, extraSamples = false, sampleLuminance = false;
+    bool extraSamples = false, sampleLight = false;
 };
 
 struct PartHeader {

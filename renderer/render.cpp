@@ -79,7 +79,7 @@ struct Recorder {
     TechniqueImages* images;
     std::uint64_t seed;
     Sampler sampler;
-    bool hasCameraLight = estimator.hasCameraLight();
+    float samplesPerLightPath;
 
     std::mutex badMutex{};
     std::vector<BadSample> bad{};  // the first few, and some more
@@ -104,36 +104,38 @@ struct Recorder {
         LaneSums lanes;
         for (const Contribution& c : sample.contributions) {
             if (!isOwn && !c.isSplat) continue;
-            if (!isUsable(c.value * c.weight)) {
-                film.countBad();
-                rememberBad({x, y, index, c.technique});
-                continue;
-            }
+            if (!isTaken(c.value * c.weight, {x, y, index, c.technique})) continue;
             if (c.isSplat) {
-                if (c.technique.t != 1) lanes.add(c);
+                if (!splats) throw std::logic_error("render: splats of an estimator that has none");
+                const bool isLights = c.technique.t == 1;
+                if (!isLights) lanes.add(c);
                 // Of a camera path one technique's share, without the others', is for the images.
-                if (splats && (c.technique.t == 1 || (images && c.technique.t >= 2)))
-                    splats->add(c);
+                if (isLights || images) splats->add(c, isLights ? samplesPerLightPath : 1.0f);
                 continue;
             }
             sum += c.value * c.weight;
-            if (images) images->add(x, y, c.technique, c.value, c.weight);
+            if (images) images->add(x, y, c.technique, toVec3(c.value), c.weight);
         }
-        for (const Contribution& lane : lanes.sums()) {
-            if (!isUsable(lane.value)) {
-                film.countBad();
-                rememberBad({x, y, index, {}});
-            } else if (splats) {
-                splats->add(lane);
-            }
-        }
+        for (const Contribution& lane : lanes.sums())
+            if (isTaken(lane.value, {x, y, index, {}}) && splats) splats->add(lane, 1.0f);
         if (!isOwn) return;
-        if (hasCameraLight || !isBlack(sum))
-            if (!film.add(x, y, sum)) rememberBad({x, y, index, {}});
+        if (isTaken(sum, {x, y, index, {}})) {
+            if (!splats)
+                film.add(x, y, sum);
+            else if (!isBlack(sum))
+                splats->addToPixel(x, y, sum);
+        }
         if (const auto& hit = sample.firstHit)
             if (!film.addFeatures(
                     x, y, {hit->albedo, hit->point.shading.z, hit->point.position, hit->distance}))
                 rememberBad({x, y, index, {}});
+    }
+
+    bool isTaken(const Spectrum& value, const BadSample& otherwise) {
+        if (isUsable(value)) return true;
+        film.countBad();
+        rememberBad(otherwise);
+        return false;
     }
 
     void rememberBad(BadSample b) {
@@ -234,16 +236,23 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
                isSplatting = lightPaths > 0 || camerasSplat;
     const std::vector<Part> parts = partsFor(film.window(), isSplatting);
     std::vector<SplatList> lists;
-    if (estimator.hasCameraLight()) film.expectCameraLight();
-    if (camerasSplat) film.expectCameraSplats();
-    if (lightPaths > 0) film.expectSplats(lightPaths * pixelsOf(parts));
-    if (isSplatting)
+    if (isSplatting) {
+        film.expectSplats();
         lists.resize(listCount(settings.threads, std::max<std::uint64_t>(lightPaths, 1)),
                      SplatList(film.window(), filter));
+    }
+    // Of all that one sample of the whole frame has.
+    const double lightPathsOfSample =
+        static_cast<double>(std::max<std::uint64_t>(lightPaths, 1) * pixelsOf(parts));
     const double pixels = static_cast<double>(film.pixelCount());
     const std::uint64_t badBefore = film.badSamples(), refusedBefore = scene.refusedRays();
-    Recorder recorder{view,          estimator,       film, settings.techniqueImages,
-                      settings.seed, settings.sampler};
+    Recorder recorder{view,
+                      estimator,
+                      film,
+                      settings.techniqueImages,
+                      settings.seed,
+                      settings.sampler,
+                      static_cast<float>(1.0 / lightPathsOfSample)};
     RenderResult result;
     std::size_t partsDone = film.state().unfinishedParts;  // of the sample at hand
     if (partsDone >= parts.size())
@@ -265,7 +274,6 @@ RenderResult render(const Scene& scene, const Camera& camera, const Estimator& e
             takeBatch(recorder, batchParts, batch, settings.threads, isUnfinished);
         else
             takeSplattingBatch(recorder, batchParts, batch, settings.threads, lists, isUnfinished);
-        film.addLightPaths(batch.sampleCount * pixelsOf(batchParts) * lightPaths);
         allPartsDone += count * batch.sampleCount;
         partsDone = batch.endPart % parts.size();
         film.setUnfinishedParts(partsDone);

@@ -21,6 +21,11 @@ struct Reach {
     int first, last;
 };
 
+/// Whether splats reach one pixel, that around them: they mostly do, and that is soon done.
+bool isOnePixel(const Filter& filter) {
+    return filter.kind() == FilterKind::box && filter.radius() == 0.5f;
+}
+
 /// The rows of one band of the film's window.
 class Band {
 public:
@@ -28,11 +33,34 @@ public:
         : filter_(filter),
           film_(film),
           images_(images),
+          isOnePixel_(isOnePixel(filter)),
+          pixelDensity_(filter.pdfFilm({0.0f, 0.0f})),
           firstRow_(film.window().y + index * bandRows),
           endRow_(std::min(firstRow_ + bandRows, film.window().y + film.window().height)) {}
 
+    void add(const SplatList::Splat& splat) {
+        if (splat.isOfPixel())
+            film_.addToSample(columnOf(splat), rowOf(splat), splat.value);
+        else if (isOnePixel_)
+            addShare(columnOf(splat), rowOf(splat), splat, pixelDensity_);
+        else
+            spread(splat);
+    }
+
+    /// That it will be added soon.
+    [[gnu::always_inline]] void expect(const SplatList::Splat& splat) const {
+        if (isOnePixel_ || splat.isOfPixel()) {
+            film_.expectSplat(columnOf(splat), columnOf(splat), rowOf(splat));
+            return;
+        }
+        const Reach columns = columnsOf(splat), rows = rowsOf(splat);
+        for (int y = rows.first; y <= rows.last; ++y)
+            film_.expectSplat(columns.first, columns.last, y);
+    }
+
+private:
     // Not inlined, lest its variables leave the registers.
-    [[gnu::noinline]] void add(const SplatList::Splat& splat) {
+    [[gnu::noinline]] void spread(const SplatList::Splat& splat) {
         const Reach columns = columnsOf(splat), rows = rowsOf(splat);
         columnDensities_.clear();
         for (int x = columns.first; x <= columns.last; ++x)
@@ -44,25 +72,19 @@ public:
             for (int x = columns.first; x <= columns.last; ++x) {
                 const auto share = static_cast<float>(
                     columnDensities_[static_cast<std::size_t>(x - columns.first)] * rowDensity);
-                if (share == 0.0f) continue;
-                if (splat.t == 1)
-                    film_.addSplat(x, y, splat.value * (splat.weight * share));
-                else if (splat.t == 0)
-                    film_.addCameraSplat(x, y, splat.value * (splat.weight * share));
-                if (images_ && splat.t >= 1)
-                    images_->add(x, y, {splat.s, splat.t}, splat.value * share, splat.weight);
+                if (share > 0.0f) addShare(x, y, splat, share);
             }
         }
     }
 
-    /// That it will be added soon.
-    [[gnu::always_inline]] void expect(const SplatList::Splat& splat) const {
-        const Reach columns = columnsOf(splat), rows = rowsOf(splat);
-        for (int y = rows.first; y <= rows.last; ++y)
-            film_.expectSplat(columns.first, columns.last, y, splat.t == 1);
+    void addShare(int x, int y, const SplatList::Splat& splat, float share) {
+        if (splat.t <= 1) film_.addToSample(x, y, splat.value * (splat.weight * share));
+        if (images_ && splat.t >= 1)
+            images_->add(x, y, {splat.s, splat.t}, splat.value * share, splat.weight);
     }
 
-private:
+    int columnOf(const SplatList::Splat& splat) const { return film_.window().x + splat.column; }
+    int rowOf(const SplatList::Splat& splat) const { return film_.window().y + splat.row; }
     Reach columnsOf(const SplatList::Splat& splat) const {
         const FrameWindow& window = film_.window();
         return {splat.film.x, filter_.radius(), window.x, window.x + window.width};
@@ -74,6 +96,8 @@ private:
     const Filter& filter_;
     Film& film_;
     TechniqueImages* images_;
+    bool isOnePixel_;
+    float pixelDensity_;  // of a filter that is one, 1/pixel²
     int firstRow_, endRow_;
     std::vector<double> columnDensities_;  // of the splat at hand, 1/pixel
 };
@@ -81,15 +105,20 @@ private:
 }  // namespace
 
 template <class Visit>
-void SplatList::forEachBand(int firstRow, int lastRow, const Visit& visit) const {
-    const int last = (lastRow - window_.y) / bandRows;
-    for (int b = (firstRow - window_.y) / bandRows; b <= last; ++b)
-        visit(static_cast<std::size_t>(b));
+void SplatList::forEachBand(const Splat& splat, const Visit& visit) const {
+    const int first = splat.row / bandRows;
+    int last = first;
+    if (!isOnePixel_ && !splat.isOfPixel()) {
+        const Reach rows(splat.film.y, radius_, window_.y, window_.y + window_.height);
+        last = (rows.last - window_.y) / bandRows;
+    }
+    for (int b = first; b <= last; ++b) visit(static_cast<std::size_t>(b));
 }
 
 SplatList::SplatList(const FrameWindow& window, const Filter& filter)
     : window_(window),
       radius_(filter.radius()),
+      isOnePixel_(isOnePixel(filter)),
       bandEnds_(static_cast<std::size_t>((window.height + bandRows - 1) / bandRows) + 1) {}
 
 void SplatList::clear() {
@@ -97,26 +126,47 @@ void SplatList::clear() {
     std::fill(bandEnds_.begin(), bandEnds_.end(), 0);
 }
 
-void SplatList::add(const Contribution& splat) {
-    const Reach columns(splat.film.x, radius_, window_.x, window_.x + window_.width);
-    const Reach rows(splat.film.y, radius_, window_.y, window_.y + window_.height);
+void SplatList::add(const Contribution& splat, float samples) {
+    keep(toVec3(splat.value) * samples, splat.weight, splat.film,
+         static_cast<std::uint16_t>(splat.technique.s),
+         static_cast<std::uint16_t>(splat.technique.t));
+}
+
+void SplatList::addToPixel(int x, int y, const Spectrum& value) {
+    const Vec2 center{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
+    keep(toVec3(value), 1.0f, center, Splat::pixelS, 0);
+}
+
+void SplatList::keep(Vec3 value, float weight, Vec2 film, std::uint16_t s, std::uint16_t t) {
+    const bool isNarrow = isOnePixel_ || Splat::isOfPixel(s, t);
+    const auto reach = [&](float at, int from, int size) {
+        Reach pixels(at, isNarrow ? 0.5f : radius_, from, from + size);
+        // On the border of two pixels, the one that begins there.
+        if (isNarrow) pixels.first = std::max(pixels.first, static_cast<int>(std::floor(at)));
+        return pixels;
+    };
+    const Reach columns = reach(film.x, window_.x, window_.width),
+                rows = reach(film.y, window_.y, window_.height);
     if (columns.first > columns.last || rows.first > rows.last) return;
-    splats_.push_back({splat.value, splat.film, splat.weight,
-                       static_cast<std::uint16_t>(splat.technique.s),
-                       static_cast<std::uint16_t>(splat.technique.t)});
-    forEachBand(rows.first, rows.last, [&](std::size_t b) { ++bandEnds_[b + 1]; });
+    // Member by member: what is put together elsewhere and then copied waits for its own stores.
+    Splat& kept = splats_.emplace_back();
+    kept.value = value;
+    kept.weight = weight;
+    kept.film = film;
+    kept.column = static_cast<std::uint16_t>(columns.first - window_.x);
+    kept.row = static_cast<std::uint16_t>(rows.first - window_.y);
+    kept.s = s;
+    kept.t = t;
+    forEachBand(kept, [&](std::size_t b) { ++bandEnds_[b + 1]; });
 }
 
 void SplatList::sortByBand() {
     // A counting sort: first [b + 1] becomes where band b begins, then it moves to its end.
     std::uint32_t begin = 0;
     for (std::size_t b = 1; b < bandEnds_.size(); ++b) begin += std::exchange(bandEnds_[b], begin);
-    numbers_.resize(begin);
-    for (std::uint32_t i = 0; i < splats_.size(); ++i) {
-        const Reach rows(splats_[i].film.y, radius_, window_.y, window_.y + window_.height);
-        forEachBand(rows.first, rows.last,
-                    [&](std::size_t b) { numbers_[bandEnds_[b + 1]++] = i; });
-    }
+    sorted_.resize(begin);
+    for (const Splat& splat : splats_)
+        forEachBand(splat, [&](std::size_t b) { sorted_[bandEnds_[b + 1]++] = splat; });
 }
 
 void addSplats(std::span<const SplatList> lists, const Filter& filter, int threads, Film& film,
@@ -126,16 +176,15 @@ void addSplats(std::span<const SplatList> lists, const Filter& filter, int threa
     parallelFor(bands, threads, [&](std::size_t b) {
         const int index = static_cast<int>(b);
         Band band(index, filter, film, images);
-        std::vector<const SplatList::Splat*> splats;
-        for (const SplatList& list : lists)
-            for (const std::uint32_t number : list.band(index)) splats.push_back(&list[number]);
-        // A splat takes some time to come from memory, and then its pixel, as long as it takes to
-        // add several.
-        constexpr std::size_t ahead = 16;
-        for (std::size_t i = 0; i < splats.size(); ++i) {
-            if (i + 2 * ahead < splats.size()) __builtin_prefetch(splats[i + 2 * ahead]);
-            if (i + ahead < splats.size()) band.expect(*splats[i + ahead]);
-            band.add(*splats[i]);
+        // Splats take some time to come from memory, and then their pixels, as long as it takes to
+        // add those of several lists.
+        constexpr std::size_t ahead = 6;
+        for (std::size_t i = 0; i < lists.size() + ahead; ++i) {
+            if (i + ahead < lists.size()) __builtin_prefetch(lists[i + ahead].band(index).data());
+            if (i < lists.size())
+                for (const SplatList::Splat& splat : lists[i].band(index)) band.expect(splat);
+            if (i >= ahead)
+                for (const SplatList::Splat& splat : lists[i - ahead].band(index)) band.add(splat);
         }
     });
 }

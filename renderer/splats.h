@@ -1,5 +1,5 @@
-// Splats: light that many threads bring to the film, added up in one fixed order, so that the same
-// picture has the same bits for any number of threads and passes.
+// Splats: light that many threads bring anywhere on the film, added up in one fixed order, so that
+// the same picture has the same bits for any number of threads and passes.
 #pragma once
 
 #include <cstdint>
@@ -17,44 +17,56 @@ namespace etendue {
 class SplatList {
 public:
     struct Splat {
-        Spectrum value;  // what the film adds, not weighted
-        Vec2 film;
+        Vec3 value;  // what the film adds, not weighted
         float weight;
+        Vec2 film;
+        std::uint16_t column, row;  // of the window, the first pixel that it reaches there
         std::uint16_t s, t;  // the technique; t = 0: all of a camera path's, which the film gets,
                              // as the images get those with t ≥ 2 each
+
+        /// Of light for the pixel of `film` alone, which no filter spreads.
+        static constexpr std::uint16_t pixelS = 1;  // with t = 0
+        static bool isOfPixel(std::uint16_t s, std::uint16_t t) { return t == 0 && s == pixelS; }
+        bool isOfPixel() const { return isOfPixel(s, t); }
     };
 
     SplatList(const FrameWindow& window, const Filter& filter);
 
     /// Empties it. Its memory is used again.
     void clear();
-    /// Keeps what reaches the window.
-    void add(const Contribution& splat);
+    /// Keeps what reaches the window. `samples`: of the frame, that the splat's value is of: of a
+    /// light path, a part of one.
+    void add(const Contribution& splat, float samples);
+    /// What a sample brings to its own pixel, of the window.
+    void addToPixel(int x, int y, const Spectrum& value);
     /// To be called when all are there, and before they are looked at.
     void sortByBand();
 
     int bandCount() const { return static_cast<int>(bandEnds_.size()) - 1; }
-    /// Of the splats that reach the band, the numbers, rising.
-    std::span<const std::uint32_t> band(int index) const {
+    /// The splats that reach the band, in the order in which they came.
+    std::span<const Splat> band(int index) const {
         const auto b = static_cast<std::size_t>(index);
-        return std::span(numbers_).subspan(bandEnds_[b], bandEnds_[b + 1] - bandEnds_[b]);
+        return std::span(sorted_).subspan(bandEnds_[b], bandEnds_[b + 1] - bandEnds_[b]);
     }
-    const Splat& operator[](std::uint32_t number) const { return splats_[number]; }
 
 private:
-    /// Of the bands that the rows, of the film's, belong to.
+    /// Keeps it if it reaches the window.
+    void keep(Vec3 value, float weight, Vec2 film, std::uint16_t s, std::uint16_t t);
+    /// Of the bands that it reaches.
     template <class Visit>
-    void forEachBand(int firstRow, int lastRow, const Visit& visit) const;
+    void forEachBand(const Splat& splat, const Visit& visit) const;
 
     FrameWindow window_;
-    float radius_;
+    float radius_;     // of the filter
+    bool isOnePixel_;  // what a splat reaches
     std::vector<Splat> splats_;
-    std::vector<std::uint32_t> numbers_;  // band after band
-    /// [b + 1]: while splats are added, how many reach band b; then, where its numbers end.
+    std::vector<Splat> sorted_;  // band after band
+    /// [b + 1]: while splats are added, how many reach band b; then, where its splats end.
     std::vector<std::uint32_t> bandEnds_;
 };
 
-/// Adds the splats of all lists to the film, and to `images` if there are any, one after another.
+/// Adds the splats of all lists to the film's sample at hand, and to `images` if there are any, one
+/// after another.
 void addSplats(std::span<const SplatList> lists, const Filter& filter, int threads, Film& film,
                TechniqueImages* images);
 

@@ -14,7 +14,7 @@ TechniqueImages::Sums TechniqueImages::noSums() const {
                 static_cast<std::size_t>(window_.height));
 }
 
-void TechniqueImages::add(int x, int y, Technique technique, const Spectrum& value, float weight) {
+void TechniqueImages::add(int x, int y, Technique technique, Vec3 value, float weight) {
     Sums& sums = sumsOf(technique);
     const auto pixel =
         static_cast<std::size_t>(y - window_.y) * static_cast<std::size_t>(window_.width) +
@@ -26,11 +26,10 @@ void TechniqueImages::add(int x, int y, Technique technique, const Spectrum& val
     }
 }
 
-std::vector<ExrChannels> TechniqueImages::channels(std::uint64_t samples,
-                                                   std::uint64_t lightPaths) const {
+std::vector<ExrChannels> TechniqueImages::channels(std::uint64_t samples) const {
+    const auto count = static_cast<double>(samples);
     std::vector<ExrChannels> result;
     const auto addImages = [&](Technique technique, const Sums& sums) {
-        const double count = static_cast<double>(technique.t == 1 ? lightPaths : samples);
         for (const bool isWeighted : {true, false}) {
             const std::string name = nameOf(technique) + (isWeighted ? "." : ".unweighted.");
             ExrChannels image{{name + "R", name + "G", name + "B"}, {}};

@@ -11,7 +11,6 @@
 #include "renderer/film.h"
 #include "renderer/image_io.h"
 #include "renderer/mis.h"
-#include "renderer/spectrum.h"
 
 namespace etendue {
 
@@ -22,12 +21,13 @@ public:
     explicit TechniqueImages(const FrameWindow& window, FilmColor color = FilmColor::rgb)
         : window_(window), color_(color) {}
 
-    /// `value` is not weighted yet. May run at the same time for different pixels.
-    void add(int x, int y, Technique technique, const Spectrum& value, float weight);
+    /// `value` is what the film's sample gets, not weighted yet. May run at the same time for
+    /// different pixels.
+    void add(int x, int y, Technique technique, Vec3 value, float weight);
 
     /// "s1t2.R" …, then "s1t2.unweighted.R" …, for each technique that found anything;
     /// where none did, those of s0t2, black.
-    std::vector<ExrChannels> channels(std::uint64_t samples, std::uint64_t lightPaths) const;
+    std::vector<ExrChannels> channels(std::uint64_t samples) const;
 
 private:
     /// Six sums a pixel: weighted, then not. Made when a technique first finds anything.

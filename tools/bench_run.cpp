@@ -307,7 +307,7 @@ private:
                 return !isStopRequested();
             });
         if (result.wasInterrupted) return false;
-        writeExr(file, film.window(), images.channels(film.samples(), film.state().lightPaths), {});
+        writeExr(file, film.window(), images.channels(film.samples()), {});
         return true;
     }
 

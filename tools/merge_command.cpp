@@ -34,6 +34,10 @@ Merged mergeAll(const std::vector<std::filesystem::path>& parts) {
                 Merged{std::move(empty), Film(part.info.window, part.info.layers, part.info.color)};
         }
         mergePart(merged->info, merged->film, part, file);
+        if (!merged->film.countsUnfinished(part.state))
+            for (const std::uint32_t sample : part.info.unfinishedSamples)
+                say(fmt::format("{}: sample {} is unfinished and left out\n", file.string(),
+                                sample));
     }
     return std::move(*merged);
 }

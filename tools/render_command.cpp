@@ -43,8 +43,8 @@ bool isAskedFor(const RenderCommand& command, const char* layer) {
     return std::ranges::find(command.layers, layer) != command.layers.end();
 }
 
-/// Light paths fall all over the picture, and so do wavelengths that a lens parts; of what they
-/// bring to a pixel in a sample the luminance alone is recorded.
+/// Light paths fall all over the picture, and so do wavelengths that a lens parts: pixels are not
+/// independent then, as etendue compare takes those to be that say the variance of their colours.
 bool hasVarianceOfColors(const LoadedScene& loaded) {
     return loaded.estimator.kind == "pt" &&
            !isParted(*loaded.camera, loaded.film.color == FilmColor::xyz);
@@ -147,8 +147,8 @@ void writePictures(const RenderCommand& command, const LoadedScene& loaded, cons
     const std::vector<ExrChannels> channels = channelsFor(command, loaded, film);
     if (!isPartFile(command.output)) writeExr(command.output, film.window(), channels, metadata);
     if (!command.techniqueImages.empty())
-        writeExr(command.techniqueImages, film.window(),
-                 techniques.channels(film.samples(), film.state().lightPaths), metadata);
+        writeExr(command.techniqueImages, film.window(), techniques.channels(film.samples()),
+                 metadata);
     writePreview(command.preview, film.window(), channels.front().pixels);
 }
 

@@ -92,7 +92,6 @@ std::vector<std::vector<float>> skyByHeroes(const LoadedScene& loaded, std::uint
     std::vector<std::vector<float>> result;
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         Film film = filmOf(loaded);
-        film.expectCameraLight();
         for (int y = 0; y < loaded.film.height; ++y)
             for (int x = 0; x < loaded.film.width; ++x)
                 for (std::uint32_t i = 0; i < samples; ++i) {

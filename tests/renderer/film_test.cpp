@@ -22,13 +22,6 @@ FrameWindow fullFrame(int width, int height) { return {width, height, 0, 0, widt
 constexpr FilmLayers everything{
     .albedo = true, .normal = true, .depth = true, .position = true, .variance = true};
 
-/// As of an estimator whose camera samples bring light.
-Film litFilm(const FrameWindow& window, const FilmLayers& layers = {}) {
-    Film film(window, layers);
-    film.expectCameraLight();
-    return film;
-}
-
 /// The image whose first channel is called `name`.
 ExrChannels image(const Film& film, const std::string& name) {
     for (const ExrChannels& channels : film.channels())
@@ -54,7 +47,7 @@ void addNoise(Film& film, std::uint32_t firstSample, std::uint32_t count) {
 }
 
 TEST_CASE("Film: a pixel is the mean of its samples") {
-    Film film = litFilm(fullFrame(3, 2));
+    Film film(fullFrame(3, 2));
     film.add(0, 0, rgb(1, 2, 3));
     film.add(0, 0, rgb(3, 0, 4));
     film.add(2, 1, rgb(0, 8, 0));
@@ -72,7 +65,7 @@ TEST_CASE("Film: a pixel is the mean of its samples") {
 }
 
 TEST_CASE("Film: many small samples are not lost beside a large one") {
-    Film film = litFilm(fullFrame(1, 1));
+    Film film(fullFrame(1, 1));
     film.add(0, 0, rgb(16777216.0f, 0, 0));  // 2²⁴, to which a float adds no 1
     constexpr int count = 1000000;
     for (int i = 0; i < count; ++i) film.add(0, 0, rgb(1, 0, 0));
@@ -80,27 +73,27 @@ TEST_CASE("Film: many small samples are not lost beside a large one") {
     CHECK(image(film, "R").pixels[0] == 17777216.0f);
 }
 
-TEST_CASE("Film: it has room for the light that is expected, 30 bytes a pixel of either kind") {
+TEST_CASE("Film: it takes 30 bytes a pixel, 12 more for splats, 12 for the luminance's variance") {
     const auto bytes = [](const Film& film) {
         const FilmState& state = film.state();
-        return (state.cameraSums.size() + state.splatSums.size()) * sizeof(ExactColor) +
-               state.layerSums.size() * (sizeof(double) + sizeof(float));
+        return state.colorSums.size() * sizeof(ExactColor) +
+               state.layerSums.size() * (sizeof(double) + sizeof(float)) +
+               state.sampleLight.size() * sizeof(Vec3);
     };
     Film film(fullFrame(100, 10));
     CHECK_FALSE(film.wantsFeatures());
-    CHECK(bytes(film) == 0);
-    film.expectSplats(1000);
     CHECK(bytes(film) == 30 * 1000);
-    CHECK_THROWS_AS(film.add(0, 0, rgb(1, 1, 1)), std::logic_error);
-    film.expectCameraLight();
     CHECK(film.add(0, 0, rgb(1, 1, 1)));
-    CHECK(bytes(film) == 60 * 1000);
+    film.expectSplats();
+    CHECK(bytes(film) == 42 * 1000);
+    CHECK_THROWS_AS(film.add(0, 0, rgb(1, 1, 1)), std::logic_error);
+    CHECK(bytes(Film(fullFrame(100, 10), {.luminanceVariance = true})) == 42 * 1000);
 }
 
 TEST_CASE("Film: a crop is that window of the full frame") {
-    Film full = litFilm(fullFrame(16, 9), everything);
+    Film full(fullFrame(16, 9), everything);
     const FrameWindow window{16, 9, 5, 2, 7, 4};
-    Film crop = litFilm(window, everything);
+    Film crop(window, everything);
     addNoise(full, 0, 8);
     addNoise(crop, 0, 8);
     const auto fullChannels = full.channels(), cropChannels = crop.channels();
@@ -118,13 +111,13 @@ TEST_CASE("Film: a crop is that window of the full frame") {
 }
 
 TEST_CASE("Film: merging two ranges of samples gives the render of their union") {
-    Film whole = litFilm(fullFrame(6, 5), everything), first = whole, second = whole;
+    Film whole(fullFrame(6, 5), everything), first = whole, second = whole;
     addNoise(whole, 0, 16);
     addNoise(first, 0, 5);
     addNoise(second, 5, 11);
     first.merge(second.state());
     CHECK(first.samples() == 16);
-    CHECK(first.state().cameraSums == whole.state().cameraSums);
+    CHECK(first.state().colorSums == whole.state().colorSums);
     CHECK(first.state().layerSums == whole.state().layerSums);
     CHECK(first.state().roundedTerms == 0);
     Film other(fullFrame(5, 5), everything), fewer(fullFrame(6, 5));
@@ -136,23 +129,22 @@ TEST_CASE("Film: parts merge to the same bits in whatever order, splats and all"
     FilmLayers layers;
     layers.luminanceVariance = true;
     constexpr int parts = 5;
-    std::vector<Film> films(parts + 1, litFilm(fullFrame(6, 5), layers));  // the last: all at once
-    for (Film& film : films) film.expectSplats(30);
+    std::vector<Film> films(parts + 1, Film(fullFrame(6, 5), layers));  // the last: all at once
+    for (Film& film : films) film.expectSplats();
     for (int sample = 0; sample < 40; ++sample)
         for (Film* film : {&films[static_cast<std::size_t>(sample / 8)], &films[parts]}) {
-            addNoise(*film, static_cast<std::uint32_t>(sample), 1);
-            for (int i = 0; i < 30; ++i)
-                film->addSplat(i % 6, i / 6, rgb(std::exp2(float(sample * i % 37) - 20.0f), 1, 3));
+            for (int i = 0; i < 60; ++i)
+                film->addToSample(i % 6, i / 6 % 5,
+                                  {std::exp2(float(sample * i % 37) - 20.0f), 1, 3});
             film->finishSample(0, 5);
-            film->addLightPaths(30);
+            film->addSamples(1);
         }
     for (const std::vector<std::size_t>& order :
          {std::vector<std::size_t>{0, 1, 2, 3, 4}, {4, 2, 0, 3, 1}, {3, 4, 1, 2, 0}}) {
         Film merged(fullFrame(6, 5), layers);
         for (const std::size_t i : order) merged.merge(films[i].state());
-        CHECK(merged.state().cameraSums == films[parts].state().cameraSums);
+        CHECK(merged.state().colorSums == films[parts].state().colorSums);
         CHECK(merged.state().layerSums == films[parts].state().layerSums);
-        CHECK(merged.state().splatSums == films[parts].state().splatSums);
         CHECK(merged.state().roundedTerms == 0);
         CHECK(image(merged, "variance.Y").pixels == image(films[parts], "variance.Y").pixels);
     }
@@ -161,14 +153,13 @@ TEST_CASE("Film: parts merge to the same bits in whatever order, splats and all"
 TEST_CASE("Film: the luminance's variance is that of whole samples, splats included") {
     FilmLayers layers;
     layers.luminanceVariance = true;
-    Film film = litFilm(fullFrame(1, 1), layers);
-    film.expectSplats(2);
-    // Two light paths a sample. Luminances 1 + 3, 0 + 1, 2 + 0: mean 7/3, their variance 7/3.
+    Film film(fullFrame(1, 1), layers);
+    film.expectSplats();
+    // Luminances 1 + 3, 0 + 1, 2 + 0: mean 7/3, their variance 7/3.
     const float camera[] = {1, 0, 2}, splats[] = {3, 1, 0};
     for (int s = 0; s < 3; ++s) {
-        film.add(0, 0, rgb(camera[s], camera[s], camera[s]));
-        film.addSplat(0, 0, rgb(2 * splats[s], 2 * splats[s], 2 * splats[s]));
-        film.addLightPaths(2);
+        for (const float light : {camera[s], splats[s]})
+            film.addToSample(0, 0, {light, light, light});
         film.finishSample(0, 1);
         film.addSamples(1);
     }
@@ -178,7 +169,7 @@ TEST_CASE("Film: the luminance's variance is that of whole samples, splats inclu
 }
 
 TEST_CASE("Film: a pixel that has had an unfinished sample is divided by one more") {
-    Film film = litFilm(fullFrame(2, 1));
+    Film film(fullFrame(2, 1));
     for (int x = 0; x < 2; ++x) film.add(x, 0, rgb(1, 1, 1));
     film.addSamples(1);
     film.expectUnfinishedSample();
@@ -192,22 +183,55 @@ TEST_CASE("Film: a pixel that has had an unfinished sample is divided by one mor
     CHECK(image(film, "R").pixels == std::vector<float>{1.5f, 1.5f, 1.5f, 2.5f, 2.5f, 2.5f});
 }
 
+TEST_CASE("Film: light that is splatted is in the picture when its sample is whole, or the first") {
+    Film film(fullFrame(2, 1), {.luminanceVariance = true});
+    film.expectSplats();
+    film.addToSample(0, 0, {1, 2, 3});
+    CHECK(image(film, "R").pixels == std::vector<float>{1, 2, 3, 0, 0, 0});
+    film.finishSample(0, 1);
+    film.addSamples(1);
+    film.expectUnfinishedSample();
+    film.addToSample(0, 0, {9, 9, 9});
+    film.countUnfinished(0, 0);
+    CHECK(image(film, "R").pixels == std::vector<float>{1, 2, 3, 0, 0, 0});
+    CHECK(film.luminanceVariance(0) == 0.0);
+    // Of others, too. The sample that this one has begun is its own to finish.
+    Film merged(fullFrame(2, 1), {.luminanceVariance = true});
+    for (int i = 0; i < 2; ++i) merged.merge(film.state());
+    CHECK(image(merged, "R").pixels == std::vector<float>{1, 2, 3, 0, 0, 0});
+    film.finishSample(0, 1);
+    film.addSamples(1);
+    CHECK(image(film, "R").pixels == std::vector<float>{5, 5.5f, 6, 0, 0, 0});
+    CHECK(film.luminanceVariance(0) > 0.0);
+}
+
+TEST_CASE("Film: splats that add up to what is not finite are counted and left out") {
+    Film film(fullFrame(2, 1));
+    film.expectSplats();
+    constexpr float most = std::numeric_limits<float>::max();
+    for (int i = 0; i < 2; ++i) film.addToSample(0, 0, {most, 0, 0});
+    film.addToSample(1, 0, {most, 0, 0});
+    film.finishSample(0, 1);
+    film.addSamples(1);
+    CHECK(film.badSamples() == 1);
+    CHECK(image(film, "R").pixels == std::vector<float>{0, 0, 0, most, 0, 0});
+}
+
 TEST_CASE("Film: a render goes on from a saved state to the same bits") {
-    Film whole = litFilm(fullFrame(6, 5), everything), stopped = whole,
-         resumed(fullFrame(6, 5), everything);
+    Film whole(fullFrame(6, 5), everything), stopped = whole, resumed(fullFrame(6, 5), everything);
     addNoise(whole, 0, 7);
     addNoise(whole, 7, 9);
     addNoise(stopped, 0, 7);
     resumed.restore(stopped.state());
     addNoise(resumed, 7, 9);
-    CHECK(resumed.state().cameraSums == whole.state().cameraSums);
+    CHECK(resumed.state().colorSums == whole.state().colorSums);
     CHECK(resumed.state().layerSums == whole.state().layerSums);
     CHECK(resumed.samples() == whole.samples());
     CHECK_THROWS_AS(resumed.restore(FilmState{}), std::invalid_argument);
 }
 
 TEST_CASE("Film: normal, depth and position are means over what was met, albedo over all samples") {
-    Film film = litFilm(fullFrame(2, 1), everything);
+    Film film(fullFrame(2, 1), everything);
     CHECK(film.wantsFeatures());
     film.addFeatures(0, 0, {rgb(0.5f, 1, 0), {0, 0, 1}, {1, 2, 3}, 10.0f});
     film.addFeatures(0, 0, {rgb(0.5f, 0, 0), {0, 1, 0}, {3, 4, 5}, 20.0f});
@@ -223,7 +247,7 @@ TEST_CASE("Film: each layer stands alone") {
     const auto only = [](auto choose) {
         FilmLayers layers;
         choose(layers);
-        Film film = litFilm(fullFrame(1, 1), layers);
+        Film film(fullFrame(1, 1), layers);
         film.add(0, 0, rgb(1, 1, 1));
         film.add(0, 0, rgb(3, 1, 1));
         film.addFeatures(0, 0, {rgb(0.5f, 0.5f, 0.5f), {0, 0, 1}, {1, 2, 3}, 10.0f});
@@ -244,7 +268,7 @@ TEST_CASE("Film: each layer stands alone") {
 TEST_CASE("Film: the variance estimate is that of the pixel's mean, without bias") {
     // Uniform numbers: variance 1/12; of the mean of n, 1/(12 n).
     constexpr std::uint32_t n = 5;
-    Film film = litFilm(fullFrame(100, 100), everything);
+    Film film(fullFrame(100, 100), everything);
     addNoise(film, 0, n);
     const auto pixels = image(film, "variance.R").pixels;
     const Summary summary = summarize(std::vector<double>(pixels.begin(), pixels.end()));
@@ -256,7 +280,7 @@ TEST_CASE("Film: the variance estimate is that of the pixel's mean, without bias
 
 TEST_CASE("Film: the variance is zero for equal samples, and before there are two") {
     constexpr int width = 100, count = 100;
-    Film film = litFilm(fullFrame(width, 1), everything);
+    Film film(fullFrame(width, 1), everything);
     const auto addAll = [&] {
         for (int x = 0; x < width; ++x) {
             const float value = static_cast<float>(x + 1) / 97.0f;
@@ -275,7 +299,7 @@ TEST_CASE("Film: the variance is zero for equal samples, and before there are tw
 }
 
 TEST_CASE("Film: a sample that is negative or not finite is counted, reported and left out") {
-    Film film = litFilm(fullFrame(1, 1), everything);
+    Film film(fullFrame(1, 1), everything);
     CHECK(film.add(0, 0, rgb(1, 2, 3)));
     CHECK_FALSE(film.add(0, 0, rgb(nan, 0, 0)));
     CHECK_FALSE(film.add(0, 0, rgb(0, infinity, 0)));

@@ -121,12 +121,7 @@ std::vector<PixelMap> renderChart(const Scene& scene, const Camera& camera, cons
         const FilmState& state = film.state();
         PixelMap& map = maps.emplace_back();
         for (std::size_t p = 0; p < static_cast<std::size_t>(width * height); ++p) {
-            double value = 0.0;
-            if (!state.cameraSums.empty())
-                value += state.cameraSums[p].value().x / static_cast<double>(state.samples);
-            if (!state.splatSums.empty())
-                value += state.splatSums[p].value().x / static_cast<double>(state.lightPaths);
-            map.push_back(value);
+            map.push_back(state.colorSums[p].value().x / static_cast<double>(state.samples));
         }
     }
     return maps;

@@ -227,6 +227,32 @@ TEST_CASE("Part: one with more samples than are asked for stays, and no sample i
     CHECK_FALSE(fs::exists(part));
 }
 
+TEST_CASE("Part: what is there of a sample's splats is kept, not shown, and left out by a merge" *
+          doctest::test_suite("slow")) {
+    const Renders renders;
+    const std::string set = " -s estimator.kind=bdpt";
+    REQUIRE(renders.render("one.exr", "--samples 1" + set).code == 0);
+    REQUIRE(renders.render("two.exr", "--samples 2" + set).code == 0);
+    REQUIRE(renders.render("x.exr", "--samples 1 --keep-part" + set).code == 0);
+    killAtCall(22, renders.renderLine("x.exr",
+                                      "--samples 2 --resume --threads 1 --checkpoint 1e-9" + set));
+    const Part part = readPart(renders.path("x.part.exr"));
+    REQUIRE(part.info.unfinishedSamples == std::vector<std::uint32_t>{1});
+    CHECK_FALSE(part.state.sampleLight == std::vector<Vec3>(part.state.sampleLight.size()));
+    CHECK(renders.pixels("x.part.exr") == renders.pixels("one.exr"));
+
+    const Outcome merged = renders.merge({"x.part.exr"}, "merged.exr");
+    CHECK(contains(merged.output, "x.part.exr: sample 1 is unfinished and left out\n"));
+    CHECK(contains(merged.output, "samples 0:1, bit for bit"));
+    CHECK(renders.pixels("merged.exr") == renders.pixels("one.exr"));
+    REQUIRE(renders.render("b.part.exr", "--range 1:2" + set).code == 0);
+    CHECK(renders.merge({"x.part.exr", "b.part.exr"}, "both.exr").code == 0);
+    CHECK(renders.pixels("both.exr") == renders.pixels("two.exr"));
+
+    REQUIRE(renders.render("x.exr", "--samples 2 --resume" + set).code == 0);
+    CHECK(renders.pixels("x.exr") == renders.pixels("two.exr"));
+}
+
 TEST_CASE("Part: a file that a render or a merge would write twice, or over its input, is refused" *
           doctest::test_suite("slow")) {
     const Renders renders;

@@ -20,7 +20,6 @@ Film greyNoise(int samples, unsigned seed, float brightness = 1.0f) {
     FilmLayers layers;
     layers.luminanceVariance = true;
     Film film({size, size, 0, 0, size, size}, layers);
-    film.expectCameraLight();
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> uniform(0.0f, 2.0f);
     for (int s = 0; s < samples; ++s) {

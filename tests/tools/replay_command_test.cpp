@@ -25,6 +25,20 @@ Vec3 vectorIn(const std::string& json, const std::string& key) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
+/// Another estimator's samples, but for what they splat.
+class WithoutSplats final : public Estimator {
+public:
+    explicit WithoutSplats(std::unique_ptr<Estimator> whole) : whole_(std::move(whole)) {}
+    void takeSample(const View& view, SampleId id, SampleRequest request,
+                    Sample& result) const override {
+        whole_->takeSample(view, id, request, result);
+        std::erase_if(result.contributions, [](const Contribution& c) { return c.isSplat; });
+    }
+
+private:
+    std::unique_ptr<Estimator> whole_;
+};
+
 /// What `samples` samples add to one pixel, splats apart.
 Vec3 renderedSum(const std::filesystem::path& scene, const std::vector<std::string>& overrides,
                  int x, int y, std::uint32_t samples) {
@@ -34,10 +48,9 @@ Vec3 renderedSum(const std::filesystem::path& scene, const std::vector<std::stri
     RenderSettings settings;
     settings.samples = samples;
     settings.seed = 5;
-    render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator), filter, film, settings,
-           {});
-    const std::vector<ExactColor>& sums = film.state().cameraSums;
-    return sums.empty() ? Vec3() : toFloat(sums[0].value());
+    const WithoutSplats estimator(makeEstimator(loaded.estimator));
+    render(*loaded.scene, *loaded.camera, estimator, filter, film, settings, {});
+    return toFloat(film.state().colorSums[0].value());
 }
 
 }  // namespace

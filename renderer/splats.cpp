@@ -138,23 +138,25 @@ void SplatList::addToPixel(int x, int y, const Spectrum& value) {
 }
 
 void SplatList::keep(Vec3 value, float weight, Vec2 film, std::uint16_t s, std::uint16_t t) {
-    const bool isNarrow = isOnePixel_ || Splat::isOfPixel(s, t);
-    const auto reach = [&](float at, int from, int size) {
-        Reach pixels(at, isNarrow ? 0.5f : radius_, from, from + size);
-        // On the border of two pixels, the one that begins there.
-        if (isNarrow) pixels.first = std::max(pixels.first, static_cast<int>(std::floor(at)));
-        return pixels;
-    };
-    const Reach columns = reach(film.x, window_.x, window_.width),
-                rows = reach(film.y, window_.y, window_.height);
-    if (columns.first > columns.last || rows.first > rows.last) return;
+    int column, row;
+    if (isOnePixel_ || Splat::isOfPixel(s, t)) {
+        column = static_cast<int>(std::floor(film.x)) - window_.x;
+        row = static_cast<int>(std::floor(film.y)) - window_.y;
+        if (column < 0 || column >= window_.width || row < 0 || row >= window_.height) return;
+    } else {
+        const Reach columns(film.x, radius_, window_.x, window_.x + window_.width),
+            rows(film.y, radius_, window_.y, window_.y + window_.height);
+        if (columns.first > columns.last || rows.first > rows.last) return;
+        column = columns.first - window_.x;
+        row = rows.first - window_.y;
+    }
     // Member by member: what is put together elsewhere and then copied waits for its own stores.
     Splat& kept = splats_.emplace_back();
     kept.value = value;
     kept.weight = weight;
     kept.film = film;
-    kept.column = static_cast<std::uint16_t>(columns.first - window_.x);
-    kept.row = static_cast<std::uint16_t>(rows.first - window_.y);
+    kept.column = static_cast<std::uint16_t>(column);
+    kept.row = static_cast<std::uint16_t>(row);
     kept.s = s;
     kept.t = t;
     forEachBand(kept, [&](std::size_t b) { ++bandEnds_[b + 1]; });

@@ -90,6 +90,14 @@ public:
         for (std::size_t i = 0; i < wavelengthsNm.size(); ++i)
             sightings[i] = see(targetMm, aperture, wavelengthsNm[i]);
     }
+    /// Whether see() finds the sensor point, give or take `toleranceMm`, from which trace() is
+    /// known to meet `targetMm`. A lens that searches may know that without a search.
+    virtual bool finds(SensorPoint sensor, const Eigen::Vector3d& targetMm, AperturePoint aperture,
+                       double wavelengthNm, double toleranceMm) const {
+        const std::optional<Sighting> sighting = see(targetMm, aperture, wavelengthNm);
+        return sighting &&
+               ((sighting->sensor.mm - sensor.mm).cwiseAbs().array() < toleranceMm).all();
+    }
 
     /// Uniform over the aperture's area. `u` in [0, 1)².
     virtual AperturePoint sampleAperture(Eigen::Vector2d u) const = 0;

@@ -239,6 +239,22 @@ void PolynomialLens::seeEach(const Eigen::Vector3d& targetMm, AperturePoint aper
     }
 }
 
+bool PolynomialLens::finds(SensorPoint sensor, const Eigen::Vector3d& targetMm,
+                           AperturePoint aperture, double wavelengthNm, double toleranceMm) const {
+    if (!canSee(targetMm, aperture, wavelengthNm)) return false;
+    const Guess guess = firstGuess(pupil_.sight(targetMm, aperture), aperture, wavelengthNm);
+    if (guess.status != ConnectStatus::found) return false;
+    // From so near a search ends there.
+    return isNear(guess, sensor) ||
+           LensModel::finds(sensor, targetMm, aperture, wavelengthNm, toleranceMm);
+}
+
+bool PolynomialLens::isNear(const Guess& guess, SensorPoint sensor) const {
+    constexpr double near = 0.01;  // in half sizes of the sensor
+    const Eigen::Array2d moved = (sensor.mm - guess.sensorMm).cwiseAbs().array();
+    return (moved <= near * domain_.sensorHalfSizeMm.array()).all();
+}
+
 bool PolynomialLens::canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                             double wavelengthNm) const {
     return targetMm.allFinite() && aperture_.contains(aperture.mm) &&
@@ -260,11 +276,8 @@ std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, Aperture
     connection.status =
         end ? statusOf({end->sensor}, end->ray, aperture, wavelengthNm) : ConnectStatus::unsolved;
     if (connection.status != ConnectStatus::found) return end;
-    // In half sizes of the sensor.
-    constexpr double near = 0.01;
-    const Eigen::Array2d moved = (end->sensor - guess.sensorMm).cwiseAbs().array();
-    const bool isNear = (moved <= near * domain_.sensorHalfSizeMm.array()).all();
-    if (!(guess.passesRims && isNear) && !passesRims({end->sensor}, aperture, wavelengthNm))
+    if (!(guess.passesRims && isNear(guess, {end->sensor})) &&
+        !passesRims({end->sensor}, aperture, wavelengthNm))
         connection.status = ConnectStatus::blocked;
     return end;
 }

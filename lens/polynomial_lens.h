@@ -42,6 +42,8 @@ public:
     void seeEach(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                  std::span<const double> wavelengthsNm,
                  std::span<std::optional<Sighting>> sightings) const override;
+    bool finds(SensorPoint sensor, const Eigen::Vector3d& targetMm, AperturePoint aperture,
+               double wavelengthNm, double toleranceMm) const override;
     AperturePoint sampleAperture(Eigen::Vector2d u) const override;
     double apertureAreaMm2() const override { return aperture_.areaMm2(); }
     double reachMm() const override { return reachMm_; }
@@ -92,6 +94,8 @@ private:
     /// `at` on.
     std::optional<RayOrigin> originNear(Eigen::Vector4d at, const Leaving& leaving,
                                         double wavelengthNm) const;
+    /// Whether it lies so near the guess that a search from there ends in it.
+    bool isNear(const Guess& guess, SensorPoint sensor) const;
     bool canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm) const;
     /// The end of our search from a guess, and how it went; the connection's own sensor point is
     /// not set.

@@ -62,6 +62,12 @@ double footprintArea(const CameraRay& ray, double distance) {
     return areaAcross(column(0), column(1), toDouble(ray.direction));
 }
 
+/// Whether `distance`, which may be infinite, is off the images of the aperture point.
+bool hasFootprint(const CameraRay& ray, float distance) {
+    return std::isinf(distance) ? !std::isinf(pdfSolidAngle(ray))
+                                : footprintArea(ray, distance) != 0.0;
+}
+
 /// numerator / area, with no NaN where both vanish: a numerator of zero stays zero.
 float perArea(double numerator, double area) {
     return numerator == 0.0 ? 0.0f : static_cast<float>(numerator / area);
@@ -190,16 +196,15 @@ void Camera::connectThrough(AperturePoint aperture, const Target& target,
         if (sightings[i]) connections[i] = connectionOf(*sightings[i], target);
 }
 
-std::optional<CameraConnection> Camera::connectAgain(const CameraRayOrigin& origin, float distance,
-                                                     const Wavelengths& wavelengths,
-                                                     std::size_t lane) const {
+bool Camera::findsAgain(const CameraRayOrigin& origin, float distance,
+                        const Wavelengths& wavelengths, std::size_t lane) const {
     const CameraRay& ray = origin.ray;
-    const Target target = std::isinf(distance) ? targetToward(ray.direction)
-                                               : targetAt(ray.origin + ray.direction * distance);
-    const double nm = wavelengthNm(wavelengths, lane);
-    std::optional<CameraConnection> connection;
-    connectThrough(origin.aperture, target, {&nm, 1}, {&connection, 1});
-    return connection;
+    const bool isInfinite = std::isinf(distance);
+    const Target target =
+        isInfinite ? targetToward(ray.direction) : targetAt(ray.origin + ray.direction * distance);
+    return hasFootprint(ray, distance) &&
+           lens_->finds({sensorPointMm(settings_, origin.film)}, target.mm, origin.aperture,
+                        wavelengthNm(wavelengths, lane), sameFilmTolerance * pixelMm_);
 }
 
 std::optional<CameraConnection> Camera::connectionOf(const Sighting& sighting,
@@ -207,13 +212,12 @@ std::optional<CameraConnection> Camera::connectionOf(const Sighting& sighting,
     const Vec2 film = filmPoint(sighting.sensor.mm);
     if (!std::isfinite(film.x) || !std::isfinite(film.y)) return {};
     const CameraRay ray = worldRay(sighting.ray);
-    if (target.isAtInfinity) {
-        if (std::isinf(pdfSolidAngle(ray))) return {};
-        return CameraConnection{film, ray, std::numeric_limits<float>::infinity()};
-    }
     const auto distance =
-        static_cast<float>((target.mm - sighting.ray.origin).norm() * metresPerMm);
-    if (!std::isfinite(distance) || footprintArea(ray, distance) == 0.0) return {};
+        target.isAtInfinity
+            ? std::numeric_limits<float>::infinity()
+            : static_cast<float>((target.mm - sighting.ray.origin).norm() * metresPerMm);
+    if (!target.isAtInfinity && !std::isfinite(distance)) return {};
+    if (!hasFootprint(ray, distance)) return {};
     return CameraConnection{film, ray, distance};
 }
 

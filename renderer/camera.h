@@ -102,11 +102,13 @@ public:
     CameraConnections connectEachToInfinity(Vec3 direction, Vec2 apertureUniform,
                                             const Wavelengths& wavelengths) const;
 
-    /// What connecting makes, through the aperture point of `origin` and at that lane's wavelength,
-    /// of what its ray meets at `distance`, m, which may be infinite.
-    std::optional<CameraConnection> connectAgain(const CameraRayOrigin& origin, float distance,
-                                                 const Wavelengths& wavelengths,
-                                                 std::size_t lane) const;
+    /// Whether connecting what the ray of `origin` meets at `distance`, m, which may be infinite,
+    /// finds the film point of `origin`, through its aperture point and at that lane's wavelength.
+    bool findsAgain(const CameraRayOrigin& origin, float distance, const Wavelengths& wavelengths,
+                    std::size_t lane) const;
+    /// How near another film point counts as the same, pixels: far below the distance of two
+    /// roots, far above the rounding of a scene point.
+    static constexpr double sameFilmTolerance = 0.1;
 
     /// Whether all rays leave the lens behind the plane through `point`, which faces `normal`
     /// (unit).

@@ -34,26 +34,24 @@ LaneFlags reachableLanes(const View& view, const CameraSample& start, const Came
     // A mirror that shines is connected as a light.
     if (!isEscape && !canConnect(path.vertices[1]) && path.vertices[1].point.light < 0)
         return isReachable;
-    // Far below the distance of two roots, far above the rounding of the vertex.
-    constexpr float tolerance = 0.1f;  // pixels
-    const auto isNear = [&](const std::optional<CameraConnection>& connection, Vec2 film) {
-        return connection && std::abs(connection->film.x - film.x) < tolerance &&
-               std::abs(connection->film.y - film.y) < tolerance;
-    };
     const Camera& camera = view.camera;
     const Wavelengths& wavelengths = start.color.wavelengths;
-    isReachable[0] = isNear(
+    if (start.origins) {
+        const float distance = isEscape
+                                   ? std::numeric_limits<float>::infinity()
+                                   : length(path.vertices[1].point.position - start.ray->origin);
+        for (std::size_t lane = 0; lane < isReachable.size(); ++lane)
+            if (const auto& origin = (*start.origins)[lane])
+                isReachable[lane] = camera.findsAgain(*origin, distance, wavelengths, lane);
+        return isReachable;
+    }
+    const std::optional<CameraConnection> connection =
         isEscape
             ? camera.connectToInfinity(path.escape->direction, start.apertureUniform, wavelengths)
-            : camera.connect(path.vertices[1].point.position, start.apertureUniform, wavelengths),
-        start.film);
-    if (!start.origins) return isReachable;
-    const float distance = isEscape ? std::numeric_limits<float>::infinity()
-                                    : length(path.vertices[1].point.position - start.ray->origin);
-    for (std::size_t lane = 1; lane < isReachable.size(); ++lane)
-        if (const auto& origin = (*start.origins)[lane])
-            isReachable[lane] =
-                isNear(camera.connectAgain(*origin, distance, wavelengths, lane), origin->film);
+            : camera.connect(path.vertices[1].point.position, start.apertureUniform, wavelengths);
+    constexpr auto tolerance = static_cast<float>(Camera::sameFilmTolerance);
+    isReachable[0] = connection && std::abs(connection->film.x - start.film.x) < tolerance &&
+                     std::abs(connection->film.y - start.film.y) < tolerance;
     return isReachable;
 }
 

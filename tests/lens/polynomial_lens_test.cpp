@@ -180,6 +180,31 @@ TEST_CASE(
         }
 }
 
+TEST_CASE("PolynomialLens: what is said to be found again is what the search finds") {
+    // Nearer targets are those for which first guesses are poor, and some are given up.
+    constexpr double toleranceMm = 1e-3;
+    int found = 0;
+    for (const Fitted* fitted :
+         {&doubleGaussIn(FitForm::twoPoint), &doubleGaussIn(FitForm::sensorState), &fisheye()})
+        for (const double distance : {1.0, 5.0, 20.0, 100.0, 1e3, 1e5, 1e12})
+            for (std::uint64_t i = 0; i < 1000; ++i) {
+                const FitQuery q = fitted->query(i);
+                const auto ray = fitted->lens.trace(q.sensor, q.aperture, q.wavelengthNm);
+                if (!ray) continue;
+                const Eigen::Vector3d target = ray->origin + distance * ray->direction;
+                const auto seen = fitted->lens.see(target, q.aperture, q.wavelengthNm);
+                const bool isSame =
+                    seen && (seen->sensor.mm - q.sensor.mm).lpNorm<Eigen::Infinity>() < toleranceMm;
+                const auto isFound = [&](SensorPoint at) {
+                    return fitted->lens.finds(at, target, q.aperture, q.wavelengthNm, toleranceMm);
+                };
+                CHECK(isFound(q.sensor) == isSame);
+                CHECK(!isFound({-q.sensor.mm}));  // which the ray does not come from
+                found += isSame;
+            }
+    CHECK(found > 1000);
+}
+
 TEST_CASE("PolynomialLens: a fisheye's first guess takes in where the rays of a field leave") {
     // Its pupil wanders by 10 cm. Were all rays taken to come from one point, a target 30 cm off
     // would be missed by 20 degrees, and two steps or three be needed.

@@ -82,8 +82,8 @@ public:
         if (!ray) return {};
         return Sighting{*sensor, *ray};
     }
-    /// see() at each of `wavelengthsNm`, into as many `sightings`. A lens that searches may begin
-    /// at one wavelength where it has ended at the one before.
+    /// see() at each of `wavelengthsNm`, into as many `sightings`. A lens may decide by the first
+    /// whether the target is in sight.
     virtual void seeEach(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                          std::span<const double> wavelengthsNm,
                          std::span<std::optional<Sighting>> sightings) const {

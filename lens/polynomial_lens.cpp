@@ -169,7 +169,7 @@ PolynomialLens::Guess PolynomialLens::firstGuess(const TargetSight& sight, Apert
     const Eigen::Vector2d inside =
         guess.cwiseMax(-domain_.sensorHalfSizeMm).cwiseMin(domain_.sensorHalfSizeMm);
     const auto at = [&](bool passesRims) {
-        return Guess{ConnectStatus::found, inside, passesRims, inside};
+        return Guess{ConnectStatus::found, inside, passesRims, isOutside ? inside : guess};
     };
     if (clear_.contains({inside}, aperture)) return at(true);
     // Of targets that are not near, guesses err by less than squared heights change by the margin.
@@ -203,16 +203,7 @@ void PolynomialLens::seeEach(const Eigen::Vector3d& targetMm, AperturePoint aper
                              std::span<std::optional<Sighting>> sightings) const {
     std::fill(sightings.begin(), sightings.end(), std::nullopt);
     const TargetSight sight = pupil_.sight(targetMm, aperture);
-    const auto inverseSquare = [&](std::size_t i) {
-        return 1.0 / (wavelengthsNm[i] * wavelengthsNm[i]);
-    };
     std::optional<Guess> guess;  // at the first wavelength that may be seen by
-    struct End {
-        Eigen::Vector2d sensor, missedBy;  // by the guess at its wavelength
-        double inverseSquare;
-    };
-    std::optional<End> first;              // of the searches
-    std::optional<Eigen::Vector2d> moved;  // per inverse square, from there to the latest
     for (std::size_t i = 0; i < wavelengthsNm.size(); ++i) {
         if (!canSee(targetMm, aperture, wavelengthsNm[i])) continue;
         if (!guess) {
@@ -220,20 +211,12 @@ void PolynomialLens::seeEach(const Eigen::Vector3d& targetMm, AperturePoint aper
             // what they err by, against which wavelengths hardly part.
             guess = firstGuess(sight, aperture, wavelengthsNm[i]);
             if (guess->status != ConnectStatus::found) return;
-        } else if (first && moved) {
-            guess->beginMm = first->sensor + (inverseSquare(i) - first->inverseSquare) * *moved;
         } else {
             guess->beginMm = sensorAt(sight, aperture, wavelengthsNm[i]);
-            if (first) guess->beginMm += first->missedBy;
         }
         Connection connection;
         const std::optional<Aimed> end =
             aim(targetMm, aperture, wavelengthsNm[i], *guess, sightToleranceRadians, connection);
-        if (!end) continue;
-        if (!first)
-            first = End{end->sensor, end->sensor - guess->beginMm, inverseSquare(i)};
-        else if (const double by = inverseSquare(i) - first->inverseSquare; by != 0.0)
-            moved = (end->sensor - first->sensor) / by;
         if (connection.status == ConnectStatus::found)
             sightings[i] = Sighting{{end->sensor}, end->ray};
     }

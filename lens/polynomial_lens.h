@@ -36,9 +36,7 @@ public:
     /// that leaves within sightToleranceRadians of it. First guesses mostly do: one evaluation.
     std::optional<Sighting> see(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                                 double wavelengthNm) const override;
-    /// The first wavelength's guess decides for all whether there is anything to see. The second's
-    /// is moved by what the first one's missed by, which hardly changes with the wavelength;
-    /// further searches begin where the two ends lead, as 1/λ² (Cauchy).
+    /// The first wavelength's guess decides for all whether there is anything to see.
     void seeEach(const Eigen::Vector3d& targetMm, AperturePoint aperture,
                  std::span<const double> wavelengthsNm,
                  std::span<std::optional<Sighting>> sightings) const override;
@@ -58,9 +56,9 @@ private:
     struct Guess {
         /// Unless this is `found`, no sensor point sees the target, and a search would fail slowly.
         ConnectStatus status;
-        Eigen::Vector2d sensorMm;
+        Eigen::Vector2d sensorMm;  // on the sensor
         bool passesRims;  // so clearly that a ray from near it does, too; false says nothing
-        Eigen::Vector2d beginMm;  // where the search begins
+        Eigen::Vector2d beginMm;  // where the search begins, of one wavelength
     };
     /// What the fit guesses without a search, be it on the sensor or not.
     Eigen::Vector2d sensorAt(const TargetSight& sight, AperturePoint aperture,

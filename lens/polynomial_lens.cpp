@@ -153,6 +153,19 @@ Eigen::Vector2d PolynomialLens::sensorAt(const TargetSight& sight, AperturePoint
                        start_.values({sight.field, aperture.mm, wavelengthNm}));
 }
 
+bool PolynomialLens::isFarOff(const Eigen::Vector2d& guess) const {
+    return !(guess.cwiseAbs().array() <= farthestGuess * domain_.sensorHalfSizeMm.array()).all();
+}
+
+Eigen::Vector2d PolynomialLens::clampedToSensor(const Eigen::Vector2d& guess) const {
+    return guess.cwiseMax(-domain_.sensorHalfSizeMm).cwiseMin(domain_.sensorHalfSizeMm);
+}
+
+Eigen::Vector2d PolynomialLens::beginAt(const Eigen::Vector2d& guess) const {
+    if (!guess.allFinite()) return Eigen::Vector2d::Zero();
+    return isFarOff(guess) ? clampedToSensor(guess) : guess;
+}
+
 PolynomialLens::Guess PolynomialLens::firstGuess(const TargetSight& sight, AperturePoint aperture,
                                                  double wavelengthNm) const {
     const auto none = [](ConnectStatus why) { return Guess{why, {}, false, {}}; };
@@ -162,14 +175,12 @@ PolynomialLens::Guess PolynomialLens::firstGuess(const TargetSight& sight, Apert
     const Eigen::Vector2d guess = sensorAt(sight, aperture, wavelengthNm);
     // Searching for a point that sees the target where none does costs ten times what finding one
     // does.
-    const bool isOutside =
-        !(guess.cwiseAbs().array() <= farthestGuess * domain_.sensorHalfSizeMm.array()).all();
+    const bool isOutside = isFarOff(guess);
     if (isOutside && isTrusted) return none(ConnectStatus::outOfField);
-    if (!guess.allFinite()) return {ConnectStatus::found, {0.0, 0.0}, false, {0.0, 0.0}};
-    const Eigen::Vector2d inside =
-        guess.cwiseMax(-domain_.sensorHalfSizeMm).cwiseMin(domain_.sensorHalfSizeMm);
+    if (!guess.allFinite()) return {ConnectStatus::found, {0.0, 0.0}, false, beginAt(guess)};
+    const Eigen::Vector2d inside = clampedToSensor(guess);
     const auto at = [&](bool passesRims) {
-        return Guess{ConnectStatus::found, inside, passesRims, isOutside ? inside : guess};
+        return Guess{ConnectStatus::found, inside, passesRims, beginAt(guess)};
     };
     if (clear_.contains({inside}, aperture)) return at(true);
     // Of targets that are not near, guesses err by less than squared heights change by the margin.
@@ -212,7 +223,7 @@ void PolynomialLens::seeEach(const Eigen::Vector3d& targetMm, AperturePoint aper
             guess = firstGuess(sight, aperture, wavelengthsNm[i]);
             if (guess->status != ConnectStatus::found) return;
         } else {
-            guess->beginMm = sensorAt(sight, aperture, wavelengthsNm[i]);
+            guess->beginMm = beginAt(sensorAt(sight, aperture, wavelengthsNm[i]));
         }
         Connection connection;
         const std::optional<Aimed> end =
@@ -227,15 +238,14 @@ bool PolynomialLens::finds(SensorPoint sensor, const Eigen::Vector3d& targetMm,
     if (!canSee(targetMm, aperture, wavelengthNm)) return false;
     const Guess guess = firstGuess(pupil_.sight(targetMm, aperture), aperture, wavelengthNm);
     if (guess.status != ConnectStatus::found) return false;
-    // From so near a search ends there.
-    return isNear(guess, sensor) ||
+    // From so near a search ends there, to much less than the tolerance.
+    return isNear(guess.beginMm, sensor.mm) ||
            LensModel::finds(sensor, targetMm, aperture, wavelengthNm, toleranceMm);
 }
 
-bool PolynomialLens::isNear(const Guess& guess, SensorPoint sensor) const {
+bool PolynomialLens::isNear(const Eigen::Vector2d& guess, const Eigen::Vector2d& sensor) const {
     constexpr double near = 0.01;  // in half sizes of the sensor
-    const Eigen::Array2d moved = (sensor.mm - guess.sensorMm).cwiseAbs().array();
-    return (moved <= near * domain_.sensorHalfSizeMm.array()).all();
+    return ((sensor - guess).cwiseAbs().array() <= near * domain_.sensorHalfSizeMm.array()).all();
 }
 
 bool PolynomialLens::canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture,
@@ -259,7 +269,7 @@ std::optional<Aimed> PolynomialLens::aim(const Eigen::Vector3d& target, Aperture
     connection.status =
         end ? statusOf({end->sensor}, end->ray, aperture, wavelengthNm) : ConnectStatus::unsolved;
     if (connection.status != ConnectStatus::found) return end;
-    if (!(guess.passesRims && isNear(guess, {end->sensor})) &&
+    if (!(guess.passesRims && isNear(guess.sensorMm, end->sensor)) &&
         !passesRims({end->sensor}, aperture, wavelengthNm))
         connection.status = ConnectStatus::blocked;
     return end;

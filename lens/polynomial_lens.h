@@ -63,6 +63,10 @@ private:
     /// What the fit guesses without a search, be it on the sensor or not.
     Eigen::Vector2d sensorAt(const TargetSight& sight, AperturePoint aperture,
                              double wavelengthNm) const;
+    bool isFarOff(const Eigen::Vector2d& guess) const;
+    Eigen::Vector2d clampedToSensor(const Eigen::Vector2d& guess) const;
+    /// Where a search begins that has such a guess: there, unless it is far off the sensor.
+    Eigen::Vector2d beginAt(const Eigen::Vector2d& guess) const;
     Guess firstGuess(const TargetSight& sight, AperturePoint aperture, double wavelengthNm) const;
     /// The largest of the clip polynomials, or NaN if one is: unless it is at most 1 a rim blocks
     /// the ray.
@@ -92,8 +96,9 @@ private:
     /// `at` on.
     std::optional<RayOrigin> originNear(Eigen::Vector4d at, const Leaving& leaving,
                                         double wavelengthNm) const;
-    /// Whether it lies so near the guess that a search from there ends in it.
-    bool isNear(const Guess& guess, SensorPoint sensor) const;
+    /// So near that a search from the guess ends there. Test: "PolynomialLens: what is said to be
+    /// found again is what the search finds".
+    bool isNear(const Eigen::Vector2d& guess, const Eigen::Vector2d& sensor) const;
     bool canSee(const Eigen::Vector3d& targetMm, AperturePoint aperture, double wavelengthNm) const;
     /// The end of our search from a guess, and how it went; the connection's own sensor point is
     /// not set.

@@ -150,6 +150,7 @@ public:
     std::uint64_t samples() const { return state_.samples; }
     std::uint64_t badSamples() const { return state_.badSamples; }
     bool wantsFeatures() const { return slots_.hits >= 0; }
+    bool isSplattedOn() const { return !state_.sampleLight.empty(); }
     /// Whether such a state's sums have something of a sample that it has not finished.
     bool countsUnfinished(const FilmState& other) const {
         return other.sampleLight.empty() || wantsFeatures();
@@ -201,7 +202,6 @@ private:
     double lightCount(std::size_t pixel) const {
         return isSplattedOn() ? static_cast<double>(state_.samples) : sampleCount(pixel);
     }
-    bool isSplattedOn() const { return !state_.sampleLight.empty(); }
     /// In the film's own colors.
     Vec3d meanColor(std::size_t pixel) const;
     void checkSize(const FilmState& other) const;

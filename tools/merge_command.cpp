@@ -34,10 +34,10 @@ Merged mergeAll(const std::vector<std::filesystem::path>& parts) {
                 Merged{std::move(empty), Film(part.info.window, part.info.layers, part.info.color)};
         }
         mergePart(merged->info, merged->film, part, file);
-        if (!merged->film.countsUnfinished(part.state))
-            for (const std::uint32_t sample : part.info.unfinishedSamples)
-                say(fmt::format("{}: sample {} is unfinished and left out\n", file.string(),
-                                sample));
+        if (part.state.sampleLight.empty()) continue;
+        const char* what = merged->film.wantsFeatures() ? "the light of sample" : "sample";
+        for (const std::uint32_t sample : part.info.unfinishedSamples)
+            say(fmt::format("{}: {} {} is unfinished and left out\n", file.string(), what, sample));
     }
     return std::move(*merged);
 }
@@ -78,12 +78,18 @@ std::string exactnessText(const Merged& merged) {
         state.roundedTerms);
 }
 
+std::string contentText(const Merged& merged) {
+    if (merged.film.samples() == 0 && merged.film.isSplattedOn())
+        return "black, since no sample is whole";
+    return fmt::format("samples {}, {}", merged.info.ranges.text(), exactnessText(merged));
+}
+
 void checkFiles(const MergeCommand& command) {
     checkWritable(command.output, ".exr");
     checkWritable(command.preview.file, ".png");
     std::vector<GivenFile> written{{"--preview", command.preview.file}}, read;
     for (const std::filesystem::path& part : command.parts) read.push_back({"a part", part});
-    // A part that others are added to loses nothing.
+    // A part that others are added to loses no sample that is whole.
     (isPartFile(command.output) ? read : written).push_back({"-o", command.output});
     checkDistinct(written, read);
 }
@@ -106,8 +112,7 @@ ExitCode runMerge(const MergeCommand& command) {
         refuseToReplacePart(command.output, "named among the parts it adds to them");
     const Merged merged = mergeAll(command.parts);
     writeMerged(command, merged);
-    fmt::print("{}: samples {}, {}\n", command.output.string(), merged.info.ranges.text(),
-               exactnessText(merged));
+    fmt::print("{}: {}\n", command.output.string(), contentText(merged));
     tellBadSamplesOfParts(merged.film.badSamples());
     if (!command.required) return ExitCode::success;
     const std::vector<SampleRange> holes = merged.info.ranges.holes(*command.required);

@@ -251,6 +251,18 @@ TEST_CASE("Part: what is there of a sample's splats is kept, not shown, and left
 
     REQUIRE(renders.render("x.exr", "--samples 2 --resume" + set).code == 0);
     CHECK(renders.pixels("x.exr") == renders.pixels("two.exr"));
+
+    // Of the first sample, with features, which are in sums that all samples share.
+    const std::string layers = set + " --layers albedo";
+    killAtCall(22,
+               renders.renderLine("y.exr", "--samples 1 --threads 1 --checkpoint 1e-9" + layers));
+    REQUIRE(readPart(renders.path("y.part.exr")).state.samples == 0);
+    const std::vector<float> black(renders.pixels("y.part.exr").size());
+    CHECK_FALSE(renders.pixels("y.part.exr") == black);
+    const Outcome none = renders.merge({"y.part.exr"}, "none.exr");
+    CHECK(contains(none.output, "y.part.exr: the light of sample 0 is unfinished and left out\n"));
+    CHECK(contains(none.output, "none.exr: black, since no sample is whole"));
+    CHECK(renders.pixels("none.exr") == black);
 }
 
 TEST_CASE("Part: a file that a render or a merge would write twice, or over its input, is refused" *

@@ -172,7 +172,10 @@ double Film::sampleCount(std::size_t pixel) const {
 }
 
 Vec3d Film::meanColor(std::size_t pixel) const {
-    if (isSplattedOn() && state_.samples == 0) return toDouble(state_.sampleLight[pixel]);
+    if (isSplattedOn() && state_.samples == 0) {
+        const Vec3 light = state_.sampleLight[pixel];
+        return isUsable(light) ? toDouble(light) : Vec3d();
+    }
     return state_.colorSums[pixel].value() * mean(1.0, lightCount(pixel));
 }
 

@@ -129,9 +129,12 @@ void requireFinite(const FilmState& state, const fs::path& file) {
     const auto arePossible = [](const std::vector<ExactColor>& sums) {
         return std::ranges::all_of(sums, [](const ExactColor& s) { return s.isPossible(); });
     };
+    // What is usable may add up to infinity; no more than that.
+    const auto isSum = [](Vec3 light) {
+        return light.x >= 0.0f && light.y >= 0.0f && light.z >= 0.0f;
+    };
     if (!arePossible(state.colorSums) || !isFinite(state.layerSums.sums) ||
-        !isFinite(state.layerSums.rests) ||
-        !std::ranges::all_of(state.sampleLight, [](Vec3 light) { return isUsable(light); }))
+        !isFinite(state.layerSums.rests) || !std::ranges::all_of(state.sampleLight, isSum))
         throw damaged(file, "has sums that are not finite");
 }
 

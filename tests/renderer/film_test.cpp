@@ -211,6 +211,7 @@ TEST_CASE("Film: splats that add up to what is not finite are counted and left o
     constexpr float most = std::numeric_limits<float>::max();
     for (int i = 0; i < 2; ++i) film.addToSample(0, 0, {most, 0, 0});
     film.addToSample(1, 0, {most, 0, 0});
+    CHECK(image(film, "R").pixels == std::vector<float>{0, 0, 0, most, 0, 0});
     film.finishSample(0, 1);
     film.addSamples(1);
     CHECK(film.badSamples() == 1);

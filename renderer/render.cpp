@@ -119,11 +119,10 @@ struct Recorder {
         for (const Contribution& lane : lanes.sums())
             if (isTaken(lane.value, {x, y, index, {}}) && splats) splats->add(lane, 1.0f);
         if (!isOwn) return;
-        if (isTaken(sum, {x, y, index, {}})) {
-            if (!splats)
-                film.add(x, y, sum);
-            else if (!isBlack(sum))
-                splats->addToPixel(x, y, sum);
+        if (!splats) {
+            if (!film.add(x, y, sum)) rememberBad({x, y, index, {}});
+        } else if (isTaken(sum, {x, y, index, {}}) && !isBlack(sum)) {
+            splats->addToPixel(x, y, sum);
         }
         if (const auto& hit = sample.firstHit)
             if (!film.addFeatures(

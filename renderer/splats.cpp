@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "renderer/parallel.h"
@@ -119,7 +121,11 @@ SplatList::SplatList(const FrameWindow& window, const Filter& filter)
     : window_(window),
       radius_(filter.radius()),
       isOnePixel_(isOnePixel(filter)),
-      bandEnds_(static_cast<std::size_t>((window.height + bandRows - 1) / bandRows) + 1) {}
+      bandEnds_(static_cast<std::size_t>((window.height + bandRows - 1) / bandRows) + 1) {
+    constexpr int most = std::numeric_limits<std::uint16_t>::max();
+    if (window.width > most || window.height > most)
+        throw std::invalid_argument("splats: the window has more than 65535 columns or rows");
+}
 
 void SplatList::clear() {
     splats_.clear();

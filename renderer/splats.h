@@ -30,6 +30,7 @@ public:
         bool isOfPixel() const { return isOfPixel(s, t); }
     };
 
+    /// Throws std::invalid_argument if a side of the window has more than 65535 pixels.
     SplatList(const FrameWindow& window, const Filter& filter);
 
     /// Empties it. Its memory is used again.

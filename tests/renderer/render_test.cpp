@@ -224,11 +224,12 @@ TEST_CASE("Render: it goes on where another has ended, to the same bits") {
 }
 
 TEST_CASE("Render: a crop is the window of the full frame, bit for bit") {
-    for (const char* kind : {"pt", "lt", "bdpt"})
-        for (const Parted& either : eitherScene(kind, {"film.filter=gaussian"})) {
+    const auto check = [](const std::string& kind, const std::vector<std::string>& overrides) {
+        for (const Parted& either : eitherScene(kind, overrides)) {
             const LoadedScene& loaded = either.loaded;
             const bool isParted = either.isParted;
-            CAPTURE(std::string(kind));
+            CAPTURE(kind);
+            CAPTURE(overrides.front());
             CAPTURE(isParted);
             const std::vector<float> full = renderPixels(loaded, 4, 5);
             Film film({48, 32, 10, 7, 20, 15}, {}, loaded.film.color);
@@ -242,6 +243,12 @@ TEST_CASE("Render: a crop is the window of the full frame, bit for bit") {
                 for (std::size_t i = 0; i < 20 * 3; ++i)
                     REQUIRE(crop[y * 20 * 3 + i] == full[((y + 7) * 48 + 10) * 3 + i]);
         }
+    };
+    for (const char* kind : {"pt", "lt", "bdpt"})
+        for (const char* filter : {"film.filter=gaussian", "film.filter=box"})
+            check(kind, {filter});
+    // A wide box, and several light paths a sample.
+    check("bdpt", {"film.filter=box", "film.filter_radius=1", "estimator.light_paths=3"});
 }
 
 TEST_CASE("Render: the weighted pictures of all techniques sum to the picture") {

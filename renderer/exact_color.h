@@ -16,7 +16,7 @@ namespace etendue {
 /// Three sums, whole numbers of 77 bits in a unit that they share, a power of two: the least in
 /// which the largest of them fits, and so the same in any order. A term is added without error as
 /// long as its last bit is at least the unit: a float that is not below 2⁻⁵³ of the largest always
-/// is. Thirty bytes side by side, since the pixel of a light path lies anywhere in memory.
+/// is. Thirty bytes side by side.
 class [[gnu::packed]] ExactColor {
 public:
     /// Adds three floats, finite and not negative. False if bits of one were below the unit, or of

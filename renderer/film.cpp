@@ -120,7 +120,7 @@ void Film::finishSample(int firstRow, int endRow) {
                   state_.extraSamples.begin() + static_cast<std::ptrdiff_t>(end), std::uint16_t{0});
     if (!isSplattedOn()) return;
     for (std::size_t pixel = first; pixel < end; ++pixel) {
-        const Vec3 light = std::exchange(state_.sampleLight[pixel], {});
+        const Vec3 light = std::exchange(state_.sampleLight[pixel], {}).value();
         if (light == Vec3()) continue;
         // What is usable may add up to what is not.
         if (isUsable(light))
@@ -173,7 +173,7 @@ double Film::sampleCount(std::size_t pixel) const {
 
 Vec3d Film::meanColor(std::size_t pixel) const {
     if (isSplattedOn() && state_.samples == 0) {
-        const Vec3 light = state_.sampleLight[pixel];
+        const Vec3 light = state_.sampleLight[pixel].value();
         return isUsable(light) ? toDouble(light) : Vec3d();
     }
     return state_.colorSums[pixel].value() * mean(1.0, lightCount(pixel));

@@ -10,6 +10,7 @@
 #include "renderer/exact_color.h"
 #include "renderer/exact_sums.h"
 #include "renderer/image_io.h"
+#include "renderer/sample_light.h"
 #include "renderer/spectrum.h"
 #include "renderer/vec.h"
 
@@ -53,7 +54,7 @@ struct FilmState {
     std::vector<std::uint16_t> extraSamples;
     /// The light of the sample at hand, which joins the sums when all of the frame has had it;
     /// empty unless light is splatted.
-    std::vector<Vec3> sampleLight;
+    std::vector<SampleLight> sampleLight;
 
     friend bool operator==(const FilmState&, const FilmState&) = default;
 };
@@ -94,15 +95,15 @@ public:
     bool addFeatures(int x, int y, const FilmFeatures& features);
     /// From now on light is splatted: samples of any pixel bring light to many. It belongs to the
     /// picture when all of the frame has had the sample, since of a part of it nobody can say how
-    /// much is missing. To be called before addToSample(); 12 bytes a pixel.
+    /// much is missing. To be called before addToSample(); 18 bytes a pixel.
     void expectSplats() { state_.sampleLight.resize(pixelCount()); }
     /// Adds some of the light that the sample at hand brings to the pixel, from anywhere. Usable;
-    /// always in the same order, since floats are added.
-    void addToSample(int x, int y, Vec3 light) { state_.sampleLight[pixelNumber(x, y)] += light; }
+    /// always in the same order, since sums are rounded.
+    void addToSample(int x, int y, Vec3 light) { state_.sampleLight[pixelNumber(x, y)].add(light); }
     /// Has pixels first … last of a row brought near, for what will be added to them soon. To be
     /// inlined, since GCC drops calls to a function that does nothing but prefetch.
     [[gnu::always_inline]] void expectSplat(int first, int last, int y) const {
-        const Vec3* light = state_.sampleLight.data();
+        const SampleLight* light = state_.sampleLight.data();
         prefetch(light + pixelNumber(first, y), light + pixelNumber(last, y) + 1);
     }
     /// Of a sample that is left out. False.

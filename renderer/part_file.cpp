@@ -130,7 +130,8 @@ void requireFinite(const FilmState& state, const fs::path& file) {
         return std::ranges::all_of(sums, [](const ExactColor& s) { return s.isPossible(); });
     };
     // What is usable may add up to infinity; no more than that.
-    const auto isSum = [](Vec3 light) {
+    const auto isSum = [](const SampleLight& sum) {
+        const Vec3 light = sum.value();
         return light.x >= 0.0f && light.y >= 0.0f && light.z >= 0.0f;
     };
     if (!arePossible(state.colorSums) || !isFinite(state.layerSums.sums) ||

@@ -159,7 +159,7 @@ std::uint64_t bytesOfSums(const PartHeader& header) {
     std::uint64_t perPixel =
         sizeof(ExactColor) + static_cast<std::uint64_t>(Film::sumsPerPixel(info.layers)) * perSum;
     if (header.planes.extraSamples) perPixel += sizeof(std::uint16_t);
-    if (header.planes.sampleLight) perPixel += sizeof(Vec3);
+    if (header.planes.sampleLight) perPixel += sizeof(SampleLight);
     return pixels * perPixel;
 }
 

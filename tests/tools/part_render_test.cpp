@@ -238,7 +238,7 @@ TEST_CASE("Part: what is there of a sample's splats is kept, not shown, and left
                                       "--samples 2 --resume --threads 1 --checkpoint 1e-9" + set));
     const Part part = readPart(renders.path("x.part.exr"));
     REQUIRE(part.info.unfinishedSamples == std::vector<std::uint32_t>{1});
-    CHECK_FALSE(part.state.sampleLight == std::vector<Vec3>(part.state.sampleLight.size()));
+    CHECK_FALSE(part.state.sampleLight == std::vector<SampleLight>(part.state.sampleLight.size()));
     CHECK(renders.pixels("x.part.exr") == renders.pixels("one.exr"));
 
     const Outcome merged = renders.merge({"x.part.exr"}, "merged.exr");

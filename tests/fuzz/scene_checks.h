@@ -28,12 +28,14 @@ struct FitBegins {};
 /// can say; the program then reports bad samples, as it should.
 inline void renderMiddle(LoadedScene& loaded, bool isBright) {
     // A path may be as long as the file says, and a light tracer sends paths from every pixel of
-    // the frame: that is time that was asked for, and no fault.
+    // the frame, as a lens that parts colours sends wavelengths: that is time that was asked for,
+    // and no fault.
     loaded.estimator.maxDepth = std::min(loaded.estimator.maxDepth, 16);
-    constexpr double mostLightPaths = 4096;
-    const double lightPaths =
-        static_cast<double>(loaded.film.width) * loaded.film.height * loaded.estimator.lightPaths;
-    if (loaded.estimator.kind != "pt" && lightPaths > mostLightPaths) loaded.estimator.kind = "pt";
+    constexpr double mostPaths = 4096;
+    const double pixels = static_cast<double>(loaded.film.width) * loaded.film.height;
+    if (loaded.estimator.kind != "pt" && pixels * loaded.estimator.lightPaths > mostPaths)
+        loaded.estimator.kind = "pt";
+    if (pixels > mostPaths) loaded.film.color = FilmColor::rgb;
 
     FrameWindow window = loaded.film.fullFrame();
     window.width = std::min(4, window.fullWidth);

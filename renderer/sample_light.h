@@ -34,8 +34,8 @@ private:
                                                                           << 16);
     }
     void store(int k, double sum) {
-        const auto bits = std::bit_cast<std::uint64_t>(sum);
-        const std::uint64_t kept = (bits + 0x7fff + (bits >> 16 & 1)) >> 16;  // ties to even
+        const std::uint64_t kept =
+            (std::bit_cast<std::uint64_t>(sum) + 0x8000) >> 16;  // the nearest
         lower_[k] = static_cast<std::uint32_t>(kept);
         upper_[k] = static_cast<std::uint16_t>(kept >> 32);
     }

@@ -223,6 +223,40 @@ TEST_CASE("Render: it goes on where another has ended, to the same bits") {
     }
 }
 
+TEST_CASE("Render: stopped within a sample it goes on from what there is, to the same bits") {
+    for (const char* kind : {"pt", "lt", "bdpt"})
+        for (const Parted& either : eitherScene(kind)) {
+            const LoadedScene& loaded = either.loaded;
+            const bool isParted = either.isParted;
+            // A frame so small that only the lists of splats divide it.
+            if (std::string(kind) == "pt" && !isParted) continue;
+            CAPTURE(std::string(kind));
+            CAPTURE(isParted);
+            const Filter filter(loaded.film.filter, loaded.film.filterRadius);
+            const auto take = [&](Film& film, std::uint32_t first, std::uint32_t count, int threads,
+                                  bool stops = false) {
+                RenderSettings settings;
+                settings.firstSample = first;
+                settings.samples = count;
+                settings.threads = threads;
+                render(*loaded.scene, *loaded.camera, *makeEstimator(loaded.estimator), filter,
+                       film, settings, [&](const RenderProgress&) { return !stops; });
+            };
+            const Film empty(loaded.film.fullFrame(), {}, loaded.film.color);
+            Film whole = empty, stopped = empty, resumed = empty;
+            take(whole, 0, 3, 2);
+            take(stopped, 0, 1, 1);
+            take(stopped, 1, 2, 1, true);
+            REQUIRE(stopped.samples() == 1);
+            REQUIRE(stopped.state().unfinishedParts > 0);
+            REQUIRE(stopped.isSplattedOn());
+            resumed.restore(stopped.state());
+            take(resumed, 1, 2, 2);
+            CHECK(resumed.samples() == 3);
+            CHECK(resumed.channels().front().pixels == whole.channels().front().pixels);
+        }
+}
+
 TEST_CASE("Render: a crop is the window of the full frame, bit for bit") {
     const auto check = [](const std::string& kind, const std::vector<std::string>& overrides) {
         for (const Parted& either : eitherScene(kind, overrides)) {

@@ -177,10 +177,9 @@ PolynomialLens::Guess PolynomialLens::firstGuess(const TargetSight& sight, Apert
     // does.
     const bool isOutside = isFarOff(guess);
     if (isOutside && isTrusted) return none(ConnectStatus::outOfField);
-    if (!guess.allFinite()) return {ConnectStatus::found, {0.0, 0.0}, false, beginAt(guess)};
-    const Eigen::Vector2d inside = clampedToSensor(guess);
+    const Eigen::Vector2d begin = beginAt(guess), inside = clampedToSensor(begin);
     const auto at = [&](bool passesRims) {
-        return Guess{ConnectStatus::found, inside, passesRims, beginAt(guess)};
+        return Guess{ConnectStatus::found, inside, passesRims, begin};
     };
     if (clear_.contains({inside}, aperture)) return at(true);
     // Of targets that are not near, guesses err by less than squared heights change by the margin.

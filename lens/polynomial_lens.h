@@ -56,7 +56,7 @@ private:
     struct Guess {
         /// Unless this is `found`, no sensor point sees the target, and a search would fail slowly.
         ConnectStatus status;
-        Eigen::Vector2d sensorMm;  // on the sensor
+        Eigen::Vector2d sensorMm;  // on the sensor, where passesRims was asked
         bool passesRims;  // so clearly that a ray from near it does, too; false says nothing
         Eigen::Vector2d beginMm;  // where the search begins, of one wavelength
     };

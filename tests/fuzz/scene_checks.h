@@ -35,7 +35,8 @@ inline void renderMiddle(LoadedScene& loaded, bool isBright) {
     const double pixels = static_cast<double>(loaded.film.width) * loaded.film.height;
     if (loaded.estimator.kind != "pt" && pixels * loaded.estimator.lightPaths > mostPaths)
         loaded.estimator.kind = "pt";
-    if (pixels > mostPaths) loaded.film.color = FilmColor::rgb;
+    if (pixels > mostPaths && isParted(*loaded.camera, loaded.film.color == FilmColor::xyz))
+        loaded.film.color = FilmColor::rgb;
 
     FrameWindow window = loaded.film.fullFrame();
     window.width = std::min(4, window.fullWidth);

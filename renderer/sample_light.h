@@ -8,10 +8,11 @@
 
 namespace etendue {
 
-/// Three sums of floats, doubles rounded to their upper 48 bits: 37 bits of mantissa, so that n terms
-/// are off by n · 2⁻³⁸ of the sum at most. A pixel may have all light paths of a frame, whose terms
-/// may be equal: a float would be off by parts in a hundred at a million of them, and stop growing
-/// at 2²⁴. Eighteen bytes side by side, since the pixel of a light path lies anywhere in memory.
+/// Three sums of floats, doubles rounded to their upper 48 bits: 37 bits of mantissa, so that n
+/// terms are off by n · 2⁻³⁸ of the sum at most. A pixel may have all light paths of a frame, whose
+/// terms may be equal: a float would be off by parts in a hundred at a million of them, and stop
+/// growing at 2²⁴. Eighteen bytes side by side, since the pixel of a light path lies anywhere in
+/// memory.
 class [[gnu::packed]] SampleLight {
 public:
     /// Adds three floats, finite and not negative. The sum depends on their order, in its last bit.
